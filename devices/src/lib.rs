@@ -1,0 +1,10 @@
+//! Where samples come from: channels, samples, and the trait every instrument implements.
+//!
+//! A recording is a device too: `replay::Player` implements [`Device`], so everything above reads
+//! a live instrument and last year's file through the same door.
+
+mod device;
+mod sample;
+
+pub use device::{Device, DeviceError, Reading};
+pub use sample::{Quantity, Sample};

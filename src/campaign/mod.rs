@@ -1,0 +1,58 @@
+//! The campaign: one day's model, tank and recordings, as written in `campaign.toml`.
+
+use std::path::PathBuf;
+
+use devices::Quantity;
+use replay::Columns;
+
+use crate::hull::{Hull, Water};
+use crate::roll::exciting_moment::Exciter;
+
+/// A validated campaign file; every value is in SI units and in its physical range.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Campaign {
+    /// Folder that holds `campaign.toml`; results go to `results/` inside it and nowhere else.
+    pub folder: PathBuf,
+    /// Name for titles.
+    pub name: String,
+    /// The model.
+    pub hull: Hull,
+    /// The water.
+    pub water: Water,
+    /// The tank, where given.
+    pub tank: Tank,
+    /// How rod force becomes exciting moment, where a force is recorded.
+    pub exciter: Option<Exciter>,
+    /// How recordings name their channels.
+    pub columns: Columns,
+    /// The recordings in the order in which they are read.
+    pub recordings: Vec<Recording>,
+}
+
+/// Limits of the tank that runs are checked against.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Tank {
+    /// Length [m].
+    pub length_m: Option<f64>,
+    /// Width [m].
+    pub width_m: Option<f64>,
+    /// Depth [m].
+    pub depth_m: Option<f64>,
+    /// Greatest carriage speed [m/s].
+    pub carriage_max_speed_m_s: Option<f64>,
+}
+
+/// One recording of the campaign: one file, or one file per channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// Name in results: the file as written in the campaign file, relative to the folder.
+    pub name: String,
+    /// The files, with the channel each carries; `None` when the file carries every channel.
+    pub files: Vec<(Option<Quantity>, PathBuf)>,
+    /// Loading or appendage condition.
+    pub condition: String,
+    /// Carriage speed [m/s] where no speed channel was recorded.
+    pub speed_m_s: Option<f64>,
+    /// Line of `campaign.toml` that names the recording; none when the folder was searched.
+    pub line: Option<usize>,
+}

@@ -1,0 +1,64 @@
+//! What a campaign has taught so far: its runs, its rejections and its damping against Froude number.
+
+use crate::inverse::identification::{FroudeLaw, Identification};
+use crate::run::{Run, Series};
+
+/// One identified run in its place in the campaign.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IdentifiedRun {
+    /// Unique in the campaign and safe in a file name, such as `pass_03-2`.
+    pub id: String,
+    /// Name of the recording, as in the campaign file.
+    pub recording: String,
+    /// Loading or appendage condition.
+    pub condition: String,
+    /// Carriage speed over the run [m/s]: measured, else as declared for the recording.
+    pub speed_m_s: f64,
+    /// Froude number over the run [-].
+    pub froude: f64,
+    /// The run as found.
+    pub run: Run,
+    /// What it says.
+    pub identification: Identification,
+}
+
+/// A stretch of a recording that was not used.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RejectedStretch {
+    /// Name of the recording, as in the campaign file.
+    pub recording: String,
+    /// Start [s].
+    pub start_s: f64,
+    /// End [s].
+    pub end_s: f64,
+    /// The reason, as a sentence with its values and limits.
+    pub reason: String,
+}
+
+/// A whole recording, thinned for drawing: lowest and highest value of each stretch.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Overview {
+    /// Name of the recording, as in the campaign file.
+    pub recording: String,
+    /// Roll [rad]: a low and a high value per stretch.
+    pub roll: Series,
+    /// Carriage speed [m/s], where recorded.
+    pub speed: Series,
+    /// Rod force [N] or moment [N m], where recorded.
+    pub drive: Series,
+    /// What was lost or mended while reading, as sentences.
+    pub notes: Vec<String>,
+}
+
+/// Everything the campaign has taught so far.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Results {
+    /// Identified runs in the order in which they ended.
+    pub runs: Vec<IdentifiedRun>,
+    /// Stretches not used, in order.
+    pub rejected: Vec<RejectedStretch>,
+    /// One law per condition that has runs at two Froude numbers or more.
+    pub froude_laws: Vec<FroudeLaw>,
+    /// One per recording read.
+    pub overviews: Vec<Overview>,
+}

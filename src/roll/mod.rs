@@ -1,0 +1,3 @@
+//! The physics of rolling: pure formulas, no input or output, no randomness.
+
+pub mod exciting_moment;

@@ -1,0 +1,94 @@
+//! Finding runs in the stream: samples are pushed in, runs and rejections come out, no clock is read.
+
+/// Values of one channel with their times, both of the same length.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Series {
+    /// Times [s] on the recording's time base, never decreasing.
+    pub time_s: Vec<f64>,
+    /// Values in the SI unit of the channel.
+    pub value: Vec<f64>,
+}
+
+/// How the model was set rolling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum RunKind {
+    /// Heeled, released, left to roll.
+    Decay,
+    /// Rolled by the oscillator rod, steady at one frequency.
+    Forced,
+}
+
+/// Why the usable stretch of a run ends where it does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RunEnd {
+    /// The roll is lost in the noise.
+    LostInNoise,
+    /// Something stopped the roll, such as a catching hand.
+    Caught,
+    /// The carriage speed left its steady value.
+    PassEnded,
+    /// The model was released or struck again.
+    ReStruck,
+    /// The excitation changed or stopped.
+    ExcitationChanged,
+    /// A hole in the record.
+    Gap,
+    /// The recording ended.
+    RecordingEnded,
+}
+
+/// The still stretch before a run, from which zeros are taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Still {
+    /// Start of the stretch [s].
+    pub start_s: f64,
+    /// End of the stretch [s].
+    pub end_s: f64,
+    /// Mean roll [rad].
+    pub roll_rad: f64,
+    /// Mean rod force [N] or moment [N m], where one is recorded.
+    pub force: Option<f64>,
+}
+
+/// One experiment: the samples between its start and its end, with what is known about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// Decay or forced.
+    pub kind: RunKind,
+    /// First instant used [s].
+    pub start_s: f64,
+    /// Last instant used [s].
+    pub end_s: f64,
+    /// Why it ends there.
+    pub end: RunEnd,
+    /// Mean carriage speed over the run [m/s], when a speed channel was recorded.
+    pub speed_m_s: Option<f64>,
+    /// Roll [rad] from `start_s` to `end_s`.
+    pub roll: Series,
+    /// Rod force [N] or exciting moment [N m] as recorded, over the same stretch; empty without one.
+    pub drive: Series,
+    /// The still stretch before the run, when there was one.
+    pub still: Option<Still>,
+    /// Frequency of the excitation [rad/s] of a forced run, as the run finder saw it.
+    pub excitation_rad_s: Option<f64>,
+}
+
+/// A stretch that is not used, and why.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rejection {
+    /// Start of the stretch [s].
+    pub start_s: f64,
+    /// End of the stretch [s].
+    pub end_s: f64,
+    /// The reason, as a sentence with its values and limits.
+    pub reason: String,
+}
+
+/// What the run finder tells as samples arrive.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Event {
+    /// A run has ended and can be identified.
+    Run(Run),
+    /// A stretch will not be used.
+    Rejected(Rejection),
+}
