@@ -5,7 +5,23 @@
 
 pub mod hull;
 pub mod roll;
+
 pub mod run;
-pub mod inverse;
+
 pub mod campaign;
+
+pub mod inverse;
+
 pub mod results;
+
+pub mod tank;
+
+pub mod reference;
+
+pub mod catalogue;
+
+pub mod report;
+
+pub mod pipeline;
+
+pub mod command;

@@ -1,0 +1,1 @@
+//! The run catalogue beside the recordings, rebuilt from them at any time.

@@ -1,0 +1,1 @@
+//! From recordings to results: play, find runs, identify each as it ends.

@@ -1,0 +1,1 @@
+//! What the customer gets: pages with figures, tables, the JSON contract.

@@ -1,0 +1,1 @@
+//! A simulated towing tank: scenarios in, recordings with their truth out.
