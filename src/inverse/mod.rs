@@ -2,3 +2,4 @@
 
 pub mod estimate;
 pub mod identification;
+pub mod paper;
