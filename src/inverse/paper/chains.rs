@@ -39,7 +39,7 @@ pub(super) fn run(
     };
     std::thread::scope(|scope| {
         let threads: Vec<_> = (0..settings.n_chains)
-            .map(|chain| scope.spawn(move || run_one(problem, settings, chain, &watched)))
+            .map(|chain| scope.spawn(move || run_one(problem, settings, chain, watched)))
             .collect();
         threads
             .into_iter()

@@ -57,7 +57,8 @@ impl SplitChains {
         let halves = paths.iter().flat_map(|path| [&path[..n], &path[n_draws - n..]]);
         let (means, centred): (Vec<f64>, Vec<Vec<f64>>) = halves
             .map(|half| {
-                let mean = half.iter().sum::<f64>() / n as f64;
+                // Less the first draw, so that a chain that never moved has no spread at all.
+                let mean = half[0] + half.iter().map(|x| x - half[0]).sum::<f64>() / n as f64;
                 (mean, half.iter().map(|x| x - mean).collect::<Vec<f64>>())
             })
             .unzip();

@@ -76,8 +76,8 @@ impl<'a> Gibbs<'a> {
 
     /// Draws `U_j` given all the rest, for each `j` in turn.
     ///
-    /// By (2.12), `U_j` is normal with precision `H_j'H_j/sigma^2 + lambda n_j`, its mean moved from
-    /// the present value by `(H_j'(g - HU)/sigma^2 - lambda (WU)_j)/precision`.
+    /// By (2.12), `U_j` is normal with precision `H_j'H_j/sigma^2 + lambda n_j`, and its mean lies
+    /// `(H_j'(g - HU)/sigma^2 - lambda (WU)_j)/precision` from the present value.
     fn draw_moments(&mut self) {
         let convolution = self.problem.convolution;
         let (turn, dt) = (convolution.turn(), convolution.step_s());
@@ -86,7 +86,7 @@ impl<'a> Gibbs<'a> {
         let pull = convolution.apply_transposed(&self.residual);
         // What this sweep has changed so far in H U at t_j, and its rate of change.
         let (mut change, mut rate) = (0.0, 0.0);
-        for j in 0..=last {
+        for (j, pull) in pull.into_iter().enumerate() {
             self.residual[j] -= change;
             let u = self.u[j];
             let (n_neighbours, pairwise) = if j == 0 {
@@ -97,7 +97,7 @@ impl<'a> Gibbs<'a> {
                 (2.0, 2.0 * u - self.u[j - 1] - self.u[j + 1])
             };
             let overlap = self.overlaps.after(j);
-            let misfit = pull[j] - change * overlap.with_displacement - rate * overlap.with_rate;
+            let misfit = pull - change * overlap.with_displacement - rate * overlap.with_rate;
             let precision = weight * dt * overlap.with_rate + self.lambda * n_neighbours;
             let normal: f64 = self.rng.sample(StandardNormal);
             let step =
@@ -177,10 +177,10 @@ mod tests {
             let neighbours: Vec<usize> =
                 [j.checked_sub(1), Some(j + 1)].into_iter().flatten().filter(|&k| k < n).collect();
             let (mut precision, mut linear) = (0.0, 0.0);
-            for i in 0..n {
+            for (i, g) in g.iter().enumerate() {
                 let others: f64 = (0..n).filter(|&k| k != j).map(|k| h(i, k) * u[k]).sum();
                 precision += weight * h(i, j) * h(i, j);
-                linear += weight * h(i, j) * (g[i] - others);
+                linear += weight * h(i, j) * (g - others);
             }
             precision += start.lambda * neighbours.len() as f64;
             linear += start.lambda * neighbours.iter().map(|&k| u[k]).sum::<f64>();

@@ -1,8 +1,8 @@
 //! The paper's identifier as printed: its convolution, its posterior, its sampler.
 //!
-//! Source: "Application of a stochastic inverse method to the nonlinear roll damping moment of a
-//! ship moving at nonzero-forward speed", Mathematical Problems in Engineering (2012); equation
-//! numbers in round brackets are its own.
+//! Source: Han & Kinoshita, "Stochastic Inverse Identification of Nonlinear Roll Damping Moment of
+//! a Ship Moving at Nonzero-Forward Speeds", Mathematical Problems in Engineering 2012,
+//! 10.1155/2012/769385; equation, section and figure numbers in this module are its own.
 //!
 //! The unknown is one moment per sample, `U = -B/(I+dI)` [rad/s2], seen through `g = H U + noise`:
 //! - [`convolution`]: `H` and the observable `g`, (2.2)-(2.7);
