@@ -88,7 +88,8 @@ pub struct Progress {
 pub enum PaperError {
     /// The record is too short for a second difference.
     #[error(
-        "the run has {n} samples, the paper's inverse problem needs {n_min}\nhint: use a longer run or a shorter step"
+        "the run has {n} samples, the paper's inverse problem needs {n_min}\nhint: use a longer \
+         run or a shorter step"
     )]
     TooFewSamples {
         /// Samples given.
@@ -110,7 +111,8 @@ pub enum PaperError {
     },
     /// The observable holds something that is not a number.
     #[error(
-        "observable g[{index}] is {value}, not a finite number\nhint: cut the run at the gap or fill it"
+        "observable g[{index}] is {value}, not a finite number\nhint: cut the run at the gap or \
+         fill it"
     )]
     NotFinite {
         /// Sample number.
@@ -120,7 +122,8 @@ pub enum PaperError {
     },
     /// A hyperparameter is not a positive number.
     #[error(
-        "hyperparameter {name} is {value}, it must be positive\nhint: the paper uses 0.1 for all four"
+        "hyperparameter {name} is {value}, it must be positive\nhint: the paper uses 0.1 for \
+         all four"
     )]
     HyperpriorNotPositive {
         /// Its symbol in (2.13).
