@@ -6,7 +6,7 @@
 //!
 //! The unknown is one moment per sample, `U = -B/(I+dI)` [rad/s2], seen through `g = H U + noise`:
 //! - [`convolution`]: `H` and the observable `g`, (2.2)-(2.7);
-//! - [`least_squares`]: the unstable solution that calls for a prior (Fig. 9);
+//! - [`least_squares()`]: the unstable solution that calls for a prior (Fig. 9);
 //! - [`settings`]: the hyperpriors of (2.13) and the length of the chains;
 //! - [`sample`]: the posterior of (2.13) by single-site Gibbs and Metropolis-Hastings (Sec. 2.4);
 //! - [`convergence`]: whether the chains may be believed.
