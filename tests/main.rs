@@ -1,1 +1,6 @@
 //! Stories.
+
+mod dense_posterior;
+mod sampler_cases;
+mod sampler_draws_the_exact_posterior;
+mod sampler_says_what_it_did;

@@ -11,6 +11,7 @@ pub mod matrix;
 pub mod mixture;
 pub mod moment_history;
 pub mod moment_posterior;
+pub mod paper;
 pub mod record;
 pub mod smoother;
 pub mod transition;
