@@ -1,1 +1,3 @@
 //! Stories.
+
+mod run_finding_kvlcc2;
