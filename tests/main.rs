@@ -1,10 +1,10 @@
 //! Stories.
 
 mod dense_posterior;
+mod run_finding_kvlcc2;
 mod sampler_cases;
 mod sampler_draws_the_exact_posterior;
 mod sampler_says_what_it_did;
+mod the_exact_posterior_is_the_dense_one;
 mod the_simulated_tank_keeps_its_script;
 mod the_simulated_tank_writes_campaigns;
-mod run_finding_kvlcc2;
-mod the_exact_posterior_is_the_dense_one;

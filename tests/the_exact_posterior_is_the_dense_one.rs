@@ -12,11 +12,7 @@ fn differences(case: &Case, seed: u64) -> (f64, f64) {
         dense_posterior(&g, case.step_s, case.natural_frequency_rad_s, &case.hyper, case.power);
     let fast = exact(&g, &convolution, &case.hyper, case.power);
     let largest = |pairs: Vec<(f64, f64)>| {
-        pairs
-            .iter()
-            .zip(&dense.sd)
-            .map(|((a, b), sd)| ((a - b) / sd).abs())
-            .fold(0.0_f64, f64::max)
+        pairs.iter().zip(&dense.sd).map(|((a, b), sd)| ((a - b) / sd).abs()).fold(0.0_f64, f64::max)
     };
     let mean = largest(fast.mean.iter().copied().zip(dense.mean.iter().copied()).collect());
     let sd = largest(fast.sd.iter().copied().zip(dense.sd.iter().copied()).collect());
