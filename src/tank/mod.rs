@@ -9,6 +9,7 @@ mod carriage;
 mod check;
 mod equation;
 mod folder;
+mod free_roll;
 mod imposed;
 mod instruments;
 mod motion;
@@ -22,6 +23,7 @@ mod truth;
 
 pub use action::Action;
 pub use folder::{TankError, truth_path, write_campaign};
+pub use free_roll::FreeRoll;
 pub use instruments::{FileFormat, Instrument, Instruments, RecordingFormat, RollUnit};
 pub use parse::ScenarioError;
 pub use scenario::{
