@@ -1,5 +1,7 @@
 //! Campaign folders from scenarios: the paper's, the documented one, and those that are refused.
 
+use devices::{Device, Quantity, Reading, Sample};
+use replay::{ChannelColumn, Columns, Player, TimeColumn};
 use rolltank::tank::{Scenario, TrueKind, paper, simulate_pass, truth_path, write_campaign};
 
 const DOCUMENTED: &str = include_str!("../docs/scenario.md");
@@ -77,6 +79,63 @@ fn a_campaign_is_written_once_with_its_truth_beside_it() {
     assert!(roll.starts_with("t;roll\n0;"), "{}", &roll[..40]);
     let again = write_campaign(&scenario, 5, &folder, &mut |_, _| ()).unwrap_err().to_string();
     assert!(again.contains("is not empty\nhint: "), "{again}");
+}
+
+/// Plays one recording to its end.
+fn played(files: &[(Option<Quantity>, std::path::PathBuf)], columns: &Columns) -> Vec<Sample> {
+    let mut player = Player::open("pass_01", files, columns).expect("a recording");
+    let mut samples = Vec::new();
+    while player.read(&mut samples).expect("a whole recording") == Reading::More {}
+    samples
+}
+
+#[test]
+fn an_mcap_campaign_plays_back_the_samples_that_were_simulated() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("day");
+    let text = changed("format = \"csv\"", "format = \"mcap\"");
+    let scenario = Scenario::parse(&text, "mcap").unwrap();
+    write_campaign(&scenario, 5, &folder, &mut |_, _| ()).unwrap();
+    let samples = played(&[(None, folder.join("runs/pass_01.mcap"))], &Columns::default());
+    let simulated = simulate_pass(&scenario, 0, 5).samples;
+    assert_eq!(samples.len(), simulated.len());
+    for (a, b) in samples.iter().zip(&simulated) {
+        assert_eq!((a.quantity, a.value.to_bits()), (b.quantity, b.value.to_bits()));
+        // Log times are whole nanoseconds.
+        assert!((a.time_s - b.time_s).abs() < 1e-9, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn a_csv_campaign_plays_back_the_samples_that_were_simulated() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("day");
+    let scenario = Scenario::parse(documented(), "csv").unwrap();
+    write_campaign(&scenario, 5, &folder, &mut |_, _| ()).unwrap();
+    let quantities = [Quantity::Roll, Quantity::Force, Quantity::Speed];
+    let channels = quantities.map(|quantity| ChannelColumn {
+        quantity,
+        column: quantity.name().to_owned(),
+        topic: None,
+        time: None,
+        si_per_unit: if quantity == Quantity::Roll { 1.0_f64.to_radians() } else { 1.0 },
+    });
+    let columns = Columns {
+        time: Some(TimeColumn { column: "t".to_owned(), seconds_per_unit: 1.0 }),
+        sample_rate_hz: None,
+        channels: channels.into(),
+    };
+    let files = quantities.map(|quantity| {
+        (Some(quantity), folder.join(format!("runs/troubled_{}.csv", quantity.name())))
+    });
+    let samples = played(&files, &columns);
+    let simulated = simulate_pass(&scenario, 3, 5).samples;
+    assert_eq!(samples.len(), simulated.len());
+    for (a, b) in samples.iter().zip(&simulated) {
+        assert_eq!(a.quantity, b.quantity);
+        // The table keeps six decimals of a time and of degrees, eight of any other value.
+        assert!((a.time_s - b.time_s).abs() < 1e-6 && (a.value - b.value).abs() < 2e-8);
+    }
 }
 
 #[test]
