@@ -1,6 +1,7 @@
 //! Campaign folders from scenarios: the paper's, the documented one, and those that are refused.
 
 use devices::{Device, Quantity, Reading, Sample};
+use proptest::prelude::*;
 use replay::{ChannelColumn, Columns, Player, TimeColumn};
 use rolltank::tank::{Scenario, TrueKind, paper, simulate_pass, truth_path, write_campaign};
 
@@ -195,10 +196,41 @@ fn values_outside_their_limits_are_refused_by_name() {
         ("delimiter = \";\"", "delimiter = \",\"", "decimal_comma needs another delimiter"),
         ("one_file_per_channel = true", "", "different clocks cannot share one table"),
         ("froude = 0.2 ", "froude = 0.2\nspeed_m_s = 1.0 ", "needs either froude or speed_m_s"),
+        ("{ froude = 0.4,", "{ froude = 0.15,", "0.200 is outside the damping table of"),
+        ("impulse_n_m_s = 1.5", "impulse_n_m_s = 90.0", "strike.impulse_n_m_s = 90 is outside"),
+        ("b1_per_s = 0.3796", "b1_per_s = 0.0", "b1_per_s of the damping = 0 is not positive"),
         ("name = \"troubled\"", "name = \"a/b\"", "name = \"a/b\" cannot be a file name"),
     ];
     for (from, to, expected) in cases {
         let message = refusal(&changed(from, to));
         assert!(message.contains(expected) && message.contains("\nhint: "), "{message}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn a_damaged_scenario_is_refused_or_can_be_simulated(
+        at in 0.0..1.0_f64,
+        length in 0_usize..12,
+        patch in "[-0-9a-z.=\\[\\]{}\"\\n ]{0,6}",
+    ) {
+        let text: Vec<char> = documented().chars().collect();
+        let start = (at * text.len() as f64) as usize;
+        let end = (start + length).min(text.len());
+        let damaged: String =
+            text[..start].iter().copied().chain(patch.chars()).chain(text[end..].iter().copied()).collect();
+        match Scenario::parse(&damaged, "damaged.toml") {
+            Err(error) => {
+                let message = error.to_string();
+                prop_assert!(message.starts_with("damaged.toml:"), "{message}");
+                prop_assert!(message.contains("\nhint: "), "{message}");
+            }
+            Ok(scenario) => {
+                let pass = simulate_pass(&scenario, scenario.pass_count() / 2, 1);
+                prop_assert!(pass.samples.iter().all(|s| s.value.is_finite()));
+            }
+        }
     }
 }

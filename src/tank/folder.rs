@@ -90,7 +90,7 @@ pub fn write_campaign(
     let mut campaign = head.clone();
     let mut clock_s = DAY_STARTS_S;
     let mut truth = CampaignTruth {
-        schema: "rolltank.truth/1",
+        schema: "rolltank.truth/1".to_owned(),
         scenario: scenario.name.clone(),
         seed,
         passes: Vec::with_capacity(n_passes),

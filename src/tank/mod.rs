@@ -31,4 +31,6 @@ pub use scenario::{
     Shaker, Vibration, Waves, Zeros,
 };
 pub use simulate::{SimulatedPass, simulate_pass};
-pub use truth::{CampaignTruth, PassTruth, RejectedKind, TrueKind, TrueRejection, TrueRun};
+pub use truth::{
+    CampaignTruth, PassTruth, RejectedKind, TrueEnd, TrueKind, TrueRejection, TrueRun,
+};

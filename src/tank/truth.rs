@@ -1,15 +1,15 @@
 //! What really happened in a pass: the runs in it, their true coefficients, the unusable stretches.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::action::Action;
 use super::motion::{Node, Scene, Stretch};
 
 /// The truth of a whole simulated campaign, sealed in a file beside its folder.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CampaignTruth {
     /// Version of this file's shape.
-    pub schema: &'static str,
+    pub schema: String,
     /// Name of the scenario.
     pub scenario: String,
     /// Seed of all draws.
@@ -19,7 +19,7 @@ pub struct CampaignTruth {
 }
 
 /// The truth of one pass.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PassTruth {
     /// Name of the recording.
     pub name: String,
@@ -36,7 +36,7 @@ pub struct PassTruth {
 }
 
 /// How the model was set rolling.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TrueKind {
     /// Free rolling.
@@ -46,7 +46,7 @@ pub enum TrueKind {
 }
 
 /// Why a run ends where it does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TrueEnd {
     /// The roll amplitude falls below three times the noise.
@@ -66,7 +66,7 @@ pub enum TrueEnd {
 }
 
 /// One run with what an identification of it should find.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrueRun {
     /// Decay or forced.
     pub kind: TrueKind,
@@ -97,7 +97,7 @@ pub struct TrueRun {
 }
 
 /// Why a stretch cannot be used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RejectedKind {
     /// The carriage was speeding up.
@@ -123,7 +123,7 @@ pub enum RejectedKind {
 }
 
 /// A stretch that no run may use.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TrueRejection {
     /// Why.
     pub kind: RejectedKind,
