@@ -1,12 +1,13 @@
 //! The simulated tank: a scenario goes in, recordings and their sealed truth come out.
 //!
-//! It shares no equation with the identifier: [`equation`] has its own equation of motion and its
+//! It shares no equation with the identifier: `equation` has its own equation of motion and its
 //! own integrator, and what comes out has passed the whole instrument chain, so a mistake in one
 //! shows in the other.
 
 mod action;
 mod carriage;
 mod check;
+mod check_pass;
 mod equation;
 mod folder;
 mod free_roll;
@@ -20,6 +21,7 @@ mod sensing;
 mod simulate;
 mod table;
 mod truth;
+mod witness;
 
 pub use action::Action;
 pub use folder::{TankError, truth_path, write_campaign};

@@ -10,7 +10,8 @@ use super::equation::RollingModel;
 use super::motion::Scene;
 use super::scenario::{Condition, Damping, DampingRow, Pass, Scenario};
 use super::sensing::View;
-use super::truth::{PassTruth, Witness};
+use super::truth::PassTruth;
+use super::witness::Witness;
 
 /// One pass as the instruments saw it, with the truth they did not see.
 #[derive(Debug, Clone, PartialEq)]
