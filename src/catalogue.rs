@@ -50,7 +50,7 @@ pub enum CatalogueError {
     Database {
         /// The catalogue.
         path: PathBuf,
-        /// What SQLite said.
+        /// What the database said.
         source: rusqlite::Error,
     },
     /// The disk refused the file.

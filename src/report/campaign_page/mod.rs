@@ -79,10 +79,11 @@ pub(super) fn html(campaign: &Campaign, results: &Results) -> Markup {
     let page = CampaignPage { campaign, results };
     let body = html! {
         h1 { (campaign.name) }
-        p.lead { "Roll damping identified from " (results.runs.len()) " run"
-            @if results.runs.len() != 1 { "s" } " in "
-            (results.overviews.len().max(campaign.recordings.len())) " recordings; "
-            (results.rejected.len()) " stretches not used." }
+        p.lead {
+            "Roll damping identified from " (counted(results.runs.len(), "run")) " in "
+            (counted(results.overviews.len().max(campaign.recordings.len()), "recording")) "; "
+            (counted(results.rejected.len(), "stretch")) " not used."
+        }
         @if results.runs.is_empty() {
             p.warning { "No run was identified; the reasons are listed below." }
         }
@@ -93,4 +94,13 @@ pub(super) fn html(campaign: &Campaign, results: &Results) -> Markup {
         (glossary::symbols())
     };
     document::page(&campaign.name, &body)
+}
+
+fn counted(n: usize, noun: &str) -> String {
+    let ending = match (n, noun.ends_with("ch")) {
+        (1, _) => "",
+        (_, true) => "es",
+        (_, false) => "s",
+    };
+    format!("{n} {noun}{ending}")
 }

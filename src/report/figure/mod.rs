@@ -69,17 +69,25 @@ impl Ink {
 
     /// The ink of the `index`-th of several series, distinct in colour and in shape.
     pub(crate) fn of_series(index: usize) -> Self {
-        const SERIES: [(Hue, Shape); 7] = [
-            (Hue::Blue, Shape::Circle),
-            (Hue::Vermillion, Shape::Square),
-            (Hue::Green, Shape::Triangle),
-            (Hue::Purple, Shape::Diamond),
-            (Hue::Orange, Shape::Cross),
-            (Hue::Sky, Shape::OpenCircle),
-            (Hue::Black, Shape::Dot),
+        const HUES: [Hue; 7] = [
+            Hue::Blue,
+            Hue::Vermillion,
+            Hue::Green,
+            Hue::Purple,
+            Hue::Orange,
+            Hue::Sky,
+            Hue::Black,
         ];
-        let (hue, shape) = SERIES[index % SERIES.len()];
-        Self::new(hue).shaped(shape)
+        const SHAPES: [Shape; 6] = [
+            Shape::Circle,
+            Shape::Square,
+            Shape::Triangle,
+            Shape::Diamond,
+            Shape::Cross,
+            Shape::OpenCircle,
+        ];
+        // Seven hues and six shapes meet again only after forty-two series.
+        Self::new(HUES[index % HUES.len()]).shaped(SHAPES[index % SHAPES.len()])
     }
 
     /// The same ink with an entry in the legend.
@@ -139,10 +147,11 @@ impl Panel {
         Self { height_px, ..self }
     }
 
-    /// The same panel with a second scale on its right side.
+    /// The same panel with a second scale on its right side, where its factor is known.
     #[must_use]
     pub(crate) fn second_scale(self, second: SecondScale) -> Self {
-        Self { second: Some(second), ..self }
+        let known = second.factor.is_finite() && second.factor > 0.0;
+        Self { second: known.then_some(second), ..self }
     }
 
     /// Adds a curve; it is broken at holes in `x` much wider than its usual step.
@@ -247,12 +256,12 @@ impl Figure {
     /// What a screen reader says: the axes and the names of the curves.
     fn description(&self) -> String {
         let axes: Vec<_> = self.panels.iter().map(|panel| panel.y.label()).collect();
-        let mut text = format!("{} against {}.", axes.join(", "), self.x.label());
-        let labels: Vec<_> = self.legend().into_iter().filter_map(|mark| label_of(mark)).collect();
-        if !labels.is_empty() {
-            text.push_str(&format!(" Shown: {}.", labels.join(", ")));
-        }
-        notation::plain(&text)
+        let labels: Vec<_> = self.legend().into_iter().filter_map(label_of).collect();
+        let shown = match labels.as_slice() {
+            [] => String::new(),
+            labels => format!(" Shown: {}.", labels.join(", ")),
+        };
+        notation::plain(&format!("{} against {}.{shown}", axes.join(", "), self.x.label()))
     }
 
     /// The marks with a legend entry, each label once, in order of drawing.

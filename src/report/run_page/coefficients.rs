@@ -12,6 +12,7 @@ use crate::report::number::{fixed, standard_deviation};
 /// Symbol, meaning, unit, value.
 type Row = (&'static str, &'static str, &'static str, Estimate);
 
+#[expect(clippy::unnecessary_wraps, reason = "every part of a page has the same shape")]
 pub(super) fn part(page: &RunPage) -> Option<Markup> {
     let columns =
         [("Symbol", ""), ("Meaning", ""), ("Unit", ""), ("Mean and 95 % interval", ""), ("sd", "")];

@@ -9,6 +9,7 @@ use crate::report::notation;
 use crate::report::number::{estimate, fixed, significant};
 use crate::run::RunEnd;
 
+#[expect(clippy::unnecessary_wraps, reason = "every part of a page has the same shape")]
 pub(super) fn part(page: &RunPage) -> Option<Markup> {
     let (found, identification) = (&page.run.run, page.identification());
     let units = page.field_units();
@@ -17,7 +18,8 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
         |still| {
             let zero = fixed(still.roll_rad.to_degrees(), 3);
             let force = still.force.map_or(String::new(), |force| {
-                format!(", mean of the drive channel {}", significant(force, 3))
+                let unit = if page.campaign.exciter.is_some() { "N" } else { "N m" };
+                format!(", mean {} {unit} of the drive", significant(force, 2))
             });
             let (start, end) = (fixed(still.start_s, 2), fixed(still.end_s, 2));
             format!("{start} to {end} s, mean roll {zero} deg{force}")
