@@ -18,8 +18,7 @@ use rolltank::results::{IdentifiedRun, Overview, RejectedStretch, Results};
 use rolltank::roll::exciting_moment::{Arm, Exciter};
 use rolltank::run::{Run, RunEnd, RunKind, Series, Still};
 
-/// Time step of the records [s].
-const STEP_S: f64 = 0.01;
+use crate::synthetic_roll::{STEP_S, Truth};
 
 /// Noise of the roll channel [rad].
 const NOISE_RAD: f64 = 0.000_9;
@@ -115,55 +114,6 @@ fn simulated() -> Results {
     results
 }
 
-/// The coefficients a run is made from.
-#[derive(Clone, Copy)]
-struct Truth {
-    w: f64,
-    b1: f64,
-    b3: f64,
-    moment_amplitude_per_s2: f64,
-    excitation_rad_s: f64,
-}
-
-impl Truth {
-    fn forced(&self) -> bool {
-        self.moment_amplitude_per_s2 > 0.0
-    }
-
-    fn damping(&self, rate: f64) -> f64 {
-        self.b1 * rate + self.b3 * rate.powi(3)
-    }
-
-    fn acceleration(&self, t: f64, roll: f64, rate: f64) -> f64 {
-        let moment = self.moment_amplitude_per_s2 * (self.excitation_rad_s * t).cos();
-        moment - self.damping(rate) - self.w * self.w * roll
-    }
-
-    /// Roll and rate at every step, by Heun's rule at a tenth of the step.
-    fn motion(&self, n: usize) -> Vec<(f64, f64)> {
-        let (mut roll, mut rate) = (if self.forced() { 0.0 } else { 0.26 }, 0.0);
-        let (h, mut motion) = (STEP_S / 10.0, Vec::with_capacity(n));
-        // A forced run is kept once its transient has died away.
-        let n_skipped = if self.forced() { 40 * n / 10 } else { 0 };
-        for k in 0..(n_skipped + n) * 10 {
-            if k % 10 == 0 && k / 10 >= n_skipped {
-                motion.push((roll, rate));
-            }
-            let t = (k as f64 - n_skipped as f64 * 10.0) * h;
-            let a = self.acceleration(t, roll, rate);
-            let (roll_end, rate_end) = (roll + h * rate, rate + h * a);
-            let a_end = self.acceleration(t + h, roll_end, rate_end);
-            roll += 0.5 * h * (rate + rate_end);
-            rate += 0.5 * h * (a + a_end);
-        }
-        motion
-    }
-
-    fn equivalent(&self, amplitude_rad: f64) -> f64 {
-        self.b1 + 0.75 * (self.w * amplitude_rad).powi(2) * self.b3
-    }
-}
-
 fn identified(
     recording: &str,
     condition: &str,
@@ -184,22 +134,8 @@ fn identified(
         .map(|t| (truth.excitation_rad_s * (t - start_s)).cos() * truth.moment_amplitude_per_s2)
         .map(|moment| 1.68 * moment + 0.01 * normal(random))
         .collect();
-    let drive = if forced {
-        Series { time_s: time_s.clone(), value: moment_n_m.iter().map(|m| m / 0.43).collect() }
-    } else {
-        Series::default()
-    };
-    let run = Run {
-        kind: if forced { RunKind::Forced } else { RunKind::Decay },
-        start_s,
-        end_s: start_s + STEP_S * (n - 1) as f64,
-        end: if forced { RunEnd::ExcitationChanged } else { RunEnd::LostInNoise },
-        speed_m_s: Some(froude * 4.952),
-        roll: Series { time_s: time_s.clone(), value: measured.clone() },
-        drive,
-        still: Some(Still { start_s: 4.0, end_s: 20.9, roll_rad: 0.001, force: Some(0.02) }),
-        excitation_rad_s: forced.then_some(truth.excitation_rad_s),
-    };
+    let roll = Series { time_s: time_s.clone(), value: measured.clone() };
+    let run = found(truth, froude, roll, &moment_n_m);
     let amplitude = motion.iter().skip(n / 2).map(|(roll, _)| roll.abs()).fold(0.0, f64::max);
     let identification = Identification {
         kind: run.kind,
@@ -240,6 +176,27 @@ fn identified(
         froude,
         run,
         identification,
+    }
+}
+
+/// The run as the finder would hand it over.
+fn found(truth: &Truth, froude: f64, roll: Series, moment_n_m: &[f64]) -> Run {
+    let forced = truth.forced();
+    let force_n = moment_n_m.iter().map(|moment| moment / 0.43).collect();
+    Run {
+        kind: if forced { RunKind::Forced } else { RunKind::Decay },
+        start_s: roll.time_s[0],
+        end_s: roll.time_s[roll.time_s.len() - 1],
+        end: if forced { RunEnd::ExcitationChanged } else { RunEnd::LostInNoise },
+        speed_m_s: Some(froude * 4.952),
+        drive: if forced {
+            Series { time_s: roll.time_s.clone(), value: force_n }
+        } else {
+            Series::default()
+        },
+        roll,
+        still: Some(Still { start_s: 4.0, end_s: 20.9, roll_rad: 0.001, force: Some(0.02) }),
+        excitation_rad_s: forced.then_some(truth.excitation_rad_s),
     }
 }
 

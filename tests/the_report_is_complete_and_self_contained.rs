@@ -277,6 +277,21 @@ fn a_campaign_without_runs_says_so_with_its_reasons() {
 }
 
 #[test]
+fn a_recording_that_gave_no_run_is_drawn_with_what_was_rejected() {
+    let campaign = synthetic_results::campaign("OE basin");
+    let mut results = synthetic_results::results();
+    let barren = results.overviews[2].recording.clone();
+    results.runs.retain(|run| run.recording != barren);
+    let folder = tempfile::tempdir().unwrap();
+    let path = report::write_campaign(&campaign, &results, folder.path()).unwrap();
+    let page = fs::read_to_string(path).unwrap();
+    let drawn = page.split("id=\"recordings-without-runs\"").nth(1).unwrap();
+    assert!(drawn.contains(&barren));
+    assert!(attributes(&page, "id").contains(&"recording-1"));
+    assert!(!attributes(&page, "id").contains(&"recording-2"));
+}
+
+#[test]
 fn a_run_name_that_leads_out_of_the_folder_is_refused_before_anything_is_written() {
     let campaign = synthetic_results::campaign("OE basin");
     let mut results = synthetic_results::results();

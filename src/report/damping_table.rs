@@ -18,7 +18,7 @@ const FROUDE_APART: f64 = 0.012;
 
 /// Damping run by run under its condition, aligned, at most 100 columns wide.
 ///
-/// Decays have a row each, by Froude number; forced runs are summed up per condition and Froude number.
+/// Decays have a row each, by Froude number; forced runs are summed up per Froude number.
 pub fn damping_table(results: &Results) -> String {
     if results.runs.is_empty() {
         return "no run was identified\n".to_owned();

@@ -11,6 +11,7 @@ mod inertia;
 mod losses;
 mod particulars;
 mod peak_moment;
+mod recordings_without_runs;
 mod rejected;
 mod runs;
 
@@ -22,7 +23,7 @@ use crate::inverse::identification::ForcedResponse;
 use crate::results::{IdentifiedRun, Results};
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&CampaignPage) -> Option<Markup>; 12] = [
+const PARTS: [fn(&CampaignPage) -> Option<Markup>; 13] = [
     particulars::part,
     conditions::part,
     damping_against_froude::part,
@@ -34,6 +35,7 @@ const PARTS: [fn(&CampaignPage) -> Option<Markup>; 12] = [
     forced_damping::part,
     forced_runs::part,
     rejected::part,
+    recordings_without_runs::part,
     losses::part,
 ];
 

@@ -33,6 +33,7 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
         ("Greatest carriage speed", tank.carriage_max_speed_m_s.and_then(given), "m/s"),
     ];
     let mut arm = "";
+    let turned = campaign.exciter.is_some_and(|exciter| exciter.force_sign < 0.0);
     if let Some(exciter) = &campaign.exciter {
         rows.push(("Moment arm of the exciter rod l", given(exciter.moment_arm_m), "m"));
         arm = match exciter.arm {
@@ -56,7 +57,12 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
         "Particulars",
         &html! {
             (table("particulars-table", "Model scale.", &columns, &rows))
-            @if !arm.is_empty() { p.note { (arm) } }
+            @if !arm.is_empty() {
+                p.note {
+                    (arm)
+                    @if turned { " The force is recorded with the opposite sign and was turned." }
+                }
+            }
         },
     ))
 }

@@ -3,117 +3,15 @@
 mod axis;
 mod draw;
 mod frame;
+mod ink;
 mod thin;
 
 pub(crate) use axis::{Axis, SecondScale};
+pub(crate) use ink::{Hue, Ink, Shape};
 
 use maud::{Markup, PreEscaped, html};
 
 use super::notation;
-
-/// Hues that remain apart for colour-blind readers (Okabe and Ito, 2008).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Hue {
-    /// Black.
-    Black,
-    /// Blue.
-    Blue,
-    /// Vermillion.
-    Vermillion,
-    /// Bluish green.
-    Green,
-    /// Reddish purple.
-    Purple,
-    /// Orange.
-    Orange,
-    /// Sky blue.
-    Sky,
-    /// Neutral grey, for what is in the background.
-    Grey,
-}
-
-/// How a point is marked, so that series remain apart in a black-and-white print.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Shape {
-    /// Filled circle.
-    Circle,
-    /// Open circle.
-    OpenCircle,
-    /// Filled square.
-    Square,
-    /// Filled triangle.
-    Triangle,
-    /// Filled diamond.
-    Diamond,
-    /// Upright cross.
-    Cross,
-    /// A dot, for clouds of points.
-    Dot,
-}
-
-/// How one mark is drawn and what the legend calls it.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Ink {
-    hue: Hue,
-    shape: Shape,
-    dashed: bool,
-    width_px: f64,
-    label: Option<String>,
-}
-
-impl Ink {
-    /// A solid line of 1.4 px, or filled circles.
-    pub(crate) fn new(hue: Hue) -> Self {
-        Self { hue, shape: Shape::Circle, dashed: false, width_px: 1.4, label: None }
-    }
-
-    /// The ink of the `index`-th of several series, distinct in colour and in shape.
-    pub(crate) fn of_series(index: usize) -> Self {
-        const HUES: [Hue; 7] = [
-            Hue::Blue,
-            Hue::Vermillion,
-            Hue::Green,
-            Hue::Purple,
-            Hue::Orange,
-            Hue::Sky,
-            Hue::Black,
-        ];
-        const SHAPES: [Shape; 6] = [
-            Shape::Circle,
-            Shape::Square,
-            Shape::Triangle,
-            Shape::Diamond,
-            Shape::Cross,
-            Shape::OpenCircle,
-        ];
-        // Seven hues and six shapes meet again only after forty-two series.
-        Self::new(HUES[index % HUES.len()]).shaped(SHAPES[index % SHAPES.len()])
-    }
-
-    /// The same ink with an entry in the legend.
-    #[must_use]
-    pub(crate) fn named(self, label: impl Into<String>) -> Self {
-        Self { label: Some(label.into()), ..self }
-    }
-
-    /// The same ink with another mark for points.
-    #[must_use]
-    pub(crate) fn shaped(self, shape: Shape) -> Self {
-        Self { shape, ..self }
-    }
-
-    /// The same ink, dashed.
-    #[must_use]
-    pub(crate) fn dashed(self) -> Self {
-        Self { dashed: true, ..self }
-    }
-
-    /// The same ink with another line width [px].
-    #[must_use]
-    pub(crate) fn wide(self, width_px: f64) -> Self {
-        Self { width_px, ..self }
-    }
-}
 
 /// One thing drawn in a panel, in the panel's own units.
 #[derive(Debug, Clone, PartialEq)]
@@ -289,5 +187,45 @@ fn ink_of(mark: &Mark) -> &Ink {
         | Mark::ErrorBars { ink, .. }
         | Mark::Stretch { ink, .. }
         | Mark::Level { ink, .. } => ink,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// Whatever identification hands over, a page is written, with every coordinate a number.
+        #[test]
+        fn any_numbers_draw_without_a_panic_and_without_a_stray_coordinate(
+            x in proptest::collection::vec(proptest::num::f64::ANY, 0..9),
+            y in proptest::collection::vec(proptest::num::f64::ANY, 0..9),
+            lo in proptest::collection::vec(-1e3..1e3, 0..9),
+        ) {
+            let bars: Vec<_> = x.iter().zip(&y).map(|(&x, &y)| (x, y, y - 1.0, y + 1.0)).collect();
+            let panel = Panel::new(Axis::new("y"))
+                .second_scale(SecondScale { label: "z".to_owned(), factor: 2.0 })
+                .line(&x, &y, Ink::new(Hue::Blue).dashed().named("line"))
+                .line(&x, &lo, Ink::new(Hue::Blue))
+                .band(&x, &lo, &y, Ink::new(Hue::Sky).named("band"))
+                .points(&x, &lo, Ink::of_series(3))
+                .error_bars(&bars, Ink::of_series(4))
+                .stretch(-1.0, 1.0, Ink::new(Hue::Green));
+            let html = Figure::new("any", "Any", Axis::new("x")).panel(panel).markup().into_string();
+            prop_assert!(!html.contains("NaN") && !html.contains(">inf"));
+        }
+    }
+
+    #[test]
+    fn a_label_from_a_file_is_escaped_in_the_drawing() {
+        let panel = Panel::new(Axis::new("y")).line(
+            &[0.0, 1.0],
+            &[0.0, 1.0],
+            Ink::new(Hue::Blue).named("<script>&\""),
+        );
+        let html = Figure::new("any", "Any", Axis::new("x")).panel(panel).markup().into_string();
+        assert!(!html.contains("<script>") && html.contains("&lt;script&gt;"));
     }
 }
