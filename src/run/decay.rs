@@ -1,6 +1,7 @@
 //! Judges half cycle after half cycle whether the model still rolls freely.
 
 use super::RunEnd;
+use super::bins::Bin;
 use super::half_cycles::HalfCycle;
 use super::half_cycles::Ripple;
 use super::harmonic::Harmonic;
@@ -24,6 +25,12 @@ const RATIO_FALL: f64 = 0.12;
 const RATIO_RISE: f64 = 0.04;
 /// Deviation from the decay that shows a hand, as a share of the amplitude.
 const DEPARTURE: f64 = 0.06;
+/// Growth of the amplitude by a hand that rocks the model up [-].
+const ROCKED: f64 = 1.02;
+/// Share of the swing by which a model let go has come away from the hand.
+const LET_GO_SHARE: f64 = 0.1;
+/// About the length of a bin [s].
+const BIN_S: f64 = 0.06;
 
 /// What the next half cycle means for a decay.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,13 +46,43 @@ pub(super) enum Verdict {
 /// Whether two successive half cycles can be the start of a decay.
 pub(super) fn begins(first: &HalfCycle, second: &HalfCycle, ripple: Ripple) -> bool {
     let (a, b) = (first.amplitude_rad(), second.amplitude_rad());
-    let from_hold = (second.duration_s() / first.duration_from_hold_s() - 1.0).abs();
-    let from_turn = (second.duration_s() / first.duration_s() - 1.0).abs();
+    let off = |first_s: f64| (second.duration_s() - first_s).abs() / second.duration_s();
+    let (from_hold, from_turn) = (off(first.duration_from_hold_s()), off(first.duration_s()));
+    // The end of a hold is known to a bin or so.
+    let hold_tolerance = BIN_S / second.duration_s();
     a >= START_RAD.max(ripple.lost_below_rad)
         && HALF_PERIOD_S.contains(&second.duration_s())
-        && from_hold.min(from_turn) <= period_tolerance(second, ripple)
+        && from_hold.min(from_turn) <= period_tolerance(second, ripple) + hold_tolerance
         && b <= a * (1.0 + 0.01 + ripple.ratio_tolerance(a))
         && b >= 0.1 * a
+}
+
+/// Whether a hand rocked the model up to the half cycle at `start`, so that it may still have been
+/// on it then: two amplitudes before it grew.
+pub(super) fn is_rocked_up(halves: &[HalfCycle], start: usize) -> bool {
+    let grew = |k: usize| halves[k].amplitude_rad() > ROCKED * halves[k - 1].amplitude_rad();
+    let regular = |k: usize| {
+        (halves[k].duration_s() / halves[k - 1].duration_s() - 1.0).abs() < 2.0 * PERIOD_CHANGE
+    };
+    start >= 2 && grew(start) && grew(start - 1) && regular(start)
+}
+
+/// First instant [s] at which the model rolls free in a decay whose first half cycle is `first`.
+///
+/// A hand lets go within some time, so a decay from a hold begins when the roll has come away
+/// from it by a tenth of its swing; a free turning point is its own start.
+pub(super) fn start_s(first: &HalfCycle, roll: &Track, ripple: Ripple) -> f64 {
+    if !first.is_from_hold() {
+        return first.start.left_s;
+    }
+    let near_rad = LET_GO_SHARE * 2.0 * first.amplitude_rad() + 3.0 * ripple.sd_rad;
+    let near = |b: &Bin| (b.value - first.start.roll_rad).abs() <= near_rad;
+    let bins = roll.bins(first.start.time_s, first.end.time_s);
+    bins.filter(near)
+        .map(|b| b.time_s)
+        .take_while(|&t| t <= first.end.time_s)
+        .last()
+        .map_or(first.start.left_s, |t| t.max(first.start.left_s))
 }
 
 /// What `next` means for a decay that has lasted for the half cycles of `chain`, at least two.
@@ -93,6 +130,17 @@ pub(super) fn due_rad(chain: &[HalfCycle]) -> f64 {
     last.amplitude_rad() * total.powf(1.0 / (recent.len() - 1) as f64)
 }
 
+/// When [s] the amplitude falls below the noise after the last half cycle of `chain`, by its last
+/// ratios, at most a period later.
+pub(super) fn lost_s(chain: &[HalfCycle], ripple: Ripple) -> f64 {
+    let Some(last) = chain.last() else { return f64::NEG_INFINITY };
+    let half_s = half_period_s(chain);
+    let fall = (last.amplitude_rad() / due_rad(chain)).ln().max(0.01);
+    let left = (last.amplitude_rad() / ripple.lost_below_rad.max(f64::MIN_POSITIVE)).ln();
+    // The amplitude of a half cycle is that of its middle.
+    last.end.time_s + half_s * (left / fall - 0.5).clamp(0.0, 2.0)
+}
+
 /// Half period [s] of the last half cycles.
 pub(super) fn half_period_s(chain: &[HalfCycle]) -> f64 {
     match chain {
@@ -124,7 +172,7 @@ pub(super) fn departure_s(
     let decay_per_s = (last.amplitude_rad() / due_rad(chain)).ln() / half_s;
     let from_s = before.start.left_s;
     let fit = Harmonic::fit(roll.bins(from_s, last.end.time_s), frequency_rad_s, decay_per_s)?;
-    let tolerance_rad = DEPARTURE * last.amplitude_rad() + 6.0 * ripple.sd_rad;
+    let tolerance_rad = DEPARTURE * last.amplitude_rad() + 8.0 * ripple.sd_rad;
     fit.departure_s(roll.bins(last.end.time_s, until_s), tolerance_rad)
 }
 

@@ -39,6 +39,8 @@ const UNDRIVEN_SLOPE: f64 = 0.003;
 const START_SPREAD: f64 = 0.015;
 /// Deviation of a half period from the mean [-].
 const PERIOD_SPREAD: f64 = 0.06;
+/// The same over the settled cycles, where a frequency that still changes must be seen [-].
+const SETTLED_PERIOD_SPREAD: f64 = 0.025;
 /// Deviation of one amplitude that shows another excitation [-].
 const CHANGED: f64 = 0.05;
 /// Deviation of the drive that shows another excitation [-].
@@ -63,10 +65,12 @@ pub(super) fn settled(cycles: &[Cycle], is_recorded: bool, ripple: Ripple) -> Op
     let within = |c: &Cycle, spread: f64| {
         c.steady
             && (c.half.amplitude_rad() / level.amplitude_rad - 1.0).abs() <= spread + 1.5 * noise
-            && period_fits(c, level, noise)
+            && period_off(c, level) <= SETTLED_PERIOD_SPREAD + noise
     };
+    let period_trend = self::level(late).half_period_s / self::level(early).half_period_s - 1.0;
     if level.amplitude_rad < super::decay::START_RAD.max(ripple.lost_below_rad)
         || !is_flat
+        || period_trend.abs() > TREND + 0.5 * noise
         || !last.iter().all(|c| within(c, SPREAD))
     {
         return None;
@@ -89,7 +93,7 @@ pub(super) fn continues(run: &[Cycle], next: &Cycle, ripple: Ripple) -> bool {
     let off = |from: Level| (next.half.amplitude_rad() / from.amplitude_rad - 1.0).abs();
     off(recent) <= CHANGED + 1.5 * noise
         && off(first) <= 2.0 * CHANGED + 1.5 * noise
-        && period_fits(next, recent, noise)
+        && period_off(next, recent) <= PERIOD_SPREAD + noise
         && same_drive(next, recent)
 }
 
@@ -113,8 +117,17 @@ fn level(cycles: &[Cycle]) -> Level {
     Level { amplitude_rad, half_period_s, drive }
 }
 
-fn period_fits(cycle: &Cycle, level: Level, noise: f64) -> bool {
-    (cycle.half.duration_s() / level.half_period_s - 1.0).abs() <= PERIOD_SPREAD + noise
+fn period_off(cycle: &Cycle, level: Level) -> f64 {
+    (cycle.half.duration_s() / level.half_period_s - 1.0).abs()
+}
+
+/// Number of half cycles at the start of a finished `run` whose amplitude was not yet that of its
+/// later half.
+pub(super) fn n_not_yet_steady(run: &[Cycle], ripple: Ripple) -> usize {
+    let final_rad = level(&run[run.len() / 2..]).amplitude_rad;
+    let spread = START_SPREAD + 1.5 * ripple.ratio_tolerance(final_rad);
+    let off = |c: &&Cycle| (c.half.amplitude_rad() / final_rad - 1.0).abs() > spread;
+    run[..run.len() / 2].iter().take_while(off).count()
 }
 
 fn same_drive(cycle: &Cycle, level: Level) -> bool {
@@ -167,7 +180,8 @@ pub(super) fn drive_follows_decay(cycles: &[Cycle]) -> bool {
     let (Some(a), Some(b)) = (first.drive, last.drive) else { return false };
     let roll = last.half.amplitude_rad() / first.half.amplitude_rad();
     let drive = b.amplitude / a.amplitude.max(f64::MIN_POSITIVE);
-    roll < 0.93 && drive <= roll + 0.1 + 3.0 * b.noise / a.amplitude.max(f64::MIN_POSITIVE)
+    let noise = 3.0 * b.noise / a.amplitude.max(f64::MIN_POSITIVE);
+    roll < 0.85 && (drive - roll).abs() <= 0.3 * (1.0 - roll) + noise
 }
 
 #[cfg(test)]

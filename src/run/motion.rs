@@ -118,7 +118,7 @@ impl Motion {
         limits: &Limits,
         events: &mut Vec<Event>,
     ) {
-        let halves: Vec<HalfCycle> = self.cycles.iter().map(|c| c.half).collect();
+        let halves = self.halves();
         let due_rad = if halves.is_empty() { 0.0 } else { decay::due_rad(&halves) };
         let end = match self.state {
             State::Forced => RunEnd::ExcitationChanged,
@@ -128,6 +128,10 @@ impl Motion {
         self.end(end, at_s, records, limits, events);
     }
 
+    fn halves(&self) -> Vec<HalfCycle> {
+        self.cycles.iter().map(|c| c.half).collect()
+    }
+
     fn search(&mut self, cycle: Cycle, closer: &mut Closer) {
         self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle)).extend(&cycle);
         if let Some(before) = self.cycles.last() {
@@ -135,7 +139,7 @@ impl Motion {
             if growth > 1.06 && !(before.steady && cycle.steady) {
                 self.distrust =
                     Some("the roll was still disturbed by the carriage's change of speed");
-            } else if growth > NEW_START {
+            } else if growth > NEW_START && self.cycles.len() > 1 {
                 self.distrust = None;
             }
         }
@@ -170,7 +174,13 @@ impl Motion {
             a.steady && b.steady && decay::begins(&a.half, &b.half, ripple)
         };
         let n = self.cycles.len();
-        let start = (1..n).rev().take_while(begins).last()? - 1;
+        let mut start = (1..n).rev().take_while(begins).last()? - 1;
+        if decay::is_rocked_up(&self.halves(), start) {
+            start += 1;
+        }
+        if n - start < 2 {
+            return None;
+        }
         let chain = &self.cycles[start..];
         let driven = chain.last().is_some_and(Cycle::is_driven);
         (!driven || (!self.rod_on && forced::drive_follows_decay(chain))).then_some(start)
@@ -178,7 +188,7 @@ impl Motion {
 
     fn decay(&mut self, cycle: Cycle, closer: &mut Closer) {
         let ripple = closer.records.ripple();
-        let halves: Vec<HalfCycle> = self.cycles.iter().map(|c| c.half).collect();
+        let halves = self.halves();
         let driven = |c: &Cycle| c.is_driven();
         let grabbed = driven(&cycle)
             && self.cycles.last().is_some_and(driven)
@@ -241,12 +251,20 @@ impl Motion {
     /// Ends the run under way for the reason `end` at `end_s` at the latest.
     fn close(&mut self, end: RunEnd, end_s: f64, closer: &mut Closer) {
         let kind = if self.state == State::Forced { RunKind::Forced } else { RunKind::Decay };
-        let cycles = std::mem::take(&mut self.cycles);
+        let mut cycles = std::mem::take(&mut self.cycles);
+        let ripple = closer.records.ripple();
+        if kind == RunKind::Forced {
+            let n = forced::n_not_yet_steady(&cycles, ripple);
+            for cycle in cycles.drain(..n) {
+                self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle)).extend(&cycle);
+            }
+        }
         let Some(first) = cycles.first() else { return };
         let start_s = match kind {
-            RunKind::Decay => first.half.start.left_s,
+            RunKind::Decay => decay::start_s(&first.half, &closer.records.roll, ripple),
             RunKind::Forced => first.half.start.time_s,
         };
+        self.flush(start_s, closer);
         let (end, end_s, why) = closer.usable_end(kind, &cycles, end, end_s);
         let stretch =
             Stretch { kind, start_s, end_s, end, cycles: &cycles, distrust: self.distrust };
@@ -295,7 +313,8 @@ impl Closer<'_> {
             RunEnd::Gap | RunEnd::PassEnded | RunEnd::RecordingEnded | RunEnd::TooLong
         );
         if end == RunEnd::LostInNoise {
-            return (end, last_s.min(end_s), format!("{} at {last_s:.1} s", end.clause()));
+            let lost_s = decay::lost_s(&halves, ripple).min(end_s);
+            return (end, lost_s, format!("{} at {lost_s:.1} s", end.clause()));
         }
         let departure_s = match kind {
             RunKind::Decay => decay::departure_s(&halves, &records.roll, ripple, end_s),
@@ -313,7 +332,8 @@ impl Closer<'_> {
         let latest_s = left_s - 2.0 * DROPPED_BEFORE_DEPARTURE * half_s;
         let turns = halves.iter().rev().map(|h| h.end.time_s);
         let until_s = turns.chain(halves.first().map(|h| h.start.left_s));
-        let until_s = until_s.into_iter().find(|&t| t <= latest_s).unwrap_or(latest_s);
+        let turn_s = until_s.into_iter().find(|&t| t <= latest_s).unwrap_or(latest_s);
+        let until_s = turn_s.max(left_s - half_s);
         let end = match (end, kind) {
             (RunEnd::Gap | RunEnd::PassEnded | RunEnd::RecordingEnded, RunKind::Decay) => {
                 RunEnd::Caught

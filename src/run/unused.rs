@@ -74,6 +74,10 @@ impl Unused {
         let amplitude_rad = cycle.half.amplitude_rad();
         self.n_large += usize::from(amplitude_rad >= START_RAD);
         self.largest_rad = self.largest_rad.max(amplitude_rad);
+        // What trembles before the first roll to speak of is rest.
+        if self.n_large == 0 && !matches!(self.cause, Cause::After(..)) {
+            self.start_s = cycle.half.end.time_s;
+        }
     }
 
     /// The rejection of the stretch up to `end_s` at the latest; none when it was no roll to
