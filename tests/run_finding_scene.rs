@@ -1,6 +1,6 @@
 //! A labelled scene of the simulated tank, and the check that its runs are found.
 
-use rolltank::run::{Event, Limits, Rejection, Run, RunFinder, RunKind};
+use rolltank::run::{Event, Limits, Rejection, Run, RunEnd, RunFinder, RunKind};
 use rolltank::tank::{Scenario, SimulatedPass, TrueKind, TrueRun, simulate_pass};
 
 /// One pass with its instruments.
@@ -158,18 +158,22 @@ fn check_run(run: &Run, truth: &TrueRun, natural_s: f64) {
     let allowed_s = (0.5 * period_s).max(0.1);
     let driven = truth.kind == TrueKind::Forced && truth.imposed_amplitude_rad.is_none();
     let (early_s, late_s) = match truth.kind {
-        TrueKind::Decay => (0.05, allowed_s),
+        TrueKind::Decay => (0.0, allowed_s),
         // The truth waits until linear damping alone has taken the transient below 1 %; with the
         // cubic damping it dies sooner. What counts is that the amplitude is steady.
         TrueKind::Forced if driven => {
             check_amplitude(run, period_s);
             (0.7 * 2.0 * 100.0_f64.ln() / truth.b1_per_s, allowed_s)
         }
-        TrueKind::Forced => (allowed_s, allowed_s),
+        // The last quarter of the smooth ramps of 2 s moves the phase by some hundredths of a radian.
+        TrueKind::Forced => (allowed_s + 0.5, allowed_s),
     };
     let start_off_s = run.start_s - truth.start_s;
-    assert!((-early_s..=late_s).contains(&start_off_s), "start {start_off_s:+.3} s");
+    assert!((-early_s - 0.05..=late_s).contains(&start_off_s), "start {start_off_s:+.3} s");
     let end_off_s = run.end_s - truth.end_s;
+    // A noise known to 15 % loses the roll at a time known to a fall by 15 %.
+    let lost_s = if run.end == RunEnd::LostInNoise { 0.3 / truth.b1_per_s } else { 0.0 };
+    let allowed_s = allowed_s.max(lost_s);
     assert!(end_off_s.abs() <= allowed_s, "end {end_off_s:+.3} s of {allowed_s:.3} s");
     // The two enums name the same ends.
     assert_eq!(format!("{:?}", run.end), format!("{:?}", truth.end));
@@ -182,7 +186,7 @@ fn check_run(run: &Run, truth: &TrueRun, natural_s: f64) {
     assert!(run.roll.time_s.last() == Some(&run.end_s));
 }
 
-/// The amplitude over the first two periods is that of the last two, within 4 %.
+/// The amplitude over the first two periods is that of the last two, within 5 %.
 fn check_amplitude(run: &Run, period_s: f64) {
     let swing = |from_s: f64| {
         let inside = |t: &f64| (from_s..=from_s + 2.0 * period_s).contains(t);
@@ -193,5 +197,5 @@ fn check_amplitude(run: &Run, period_s: f64) {
         high - low
     };
     let ratio = swing(run.start_s) / swing(run.end_s - 2.0 * period_s);
-    assert!((ratio - 1.0).abs() < 0.04, "the amplitude changes by a factor of {ratio}");
+    assert!((ratio - 1.0).abs() < 0.05, "the amplitude changes by a factor of {ratio}");
 }

@@ -23,6 +23,10 @@ const RATIO_FALL: f64 = 0.12;
 /// Rise of the amplitude ratio with falling amplitude below which the first half cycle is free:
 /// damping never grows as the amplitude falls by more than this [-].
 const RATIO_RISE: f64 = 0.04;
+/// The same after a hand has rocked the model up.
+const ROCKED_RISE: f64 = 0.015;
+/// Change of half period after a hand has rocked the model up [-].
+const ROCKED_CHANGE: f64 = 0.05;
 /// Deviation from the decay that shows a hand, as a share of the amplitude.
 const DEPARTURE: f64 = 0.06;
 /// Growth of the amplitude by a hand that rocks the model up [-].
@@ -58,13 +62,13 @@ pub(super) fn begins(first: &HalfCycle, second: &HalfCycle, ripple: Ripple) -> b
 }
 
 /// Whether a hand rocked the model up to the half cycle at `start`, so that it may still have been
-/// on it then: two amplitudes before it grew.
+/// on it then: large amplitudes grew before it.
 pub(super) fn is_rocked_up(halves: &[HalfCycle], start: usize) -> bool {
-    let grew = |k: usize| halves[k].amplitude_rad() > ROCKED * halves[k - 1].amplitude_rad();
-    let regular = |k: usize| {
-        (halves[k].duration_s() / halves[k - 1].duration_s() - 1.0).abs() < 2.0 * PERIOD_CHANGE
+    let grew = |k: &usize| {
+        let (before, after) = (halves[k - 1].amplitude_rad(), halves[*k].amplitude_rad());
+        before >= START_RAD && after > ROCKED * before
     };
-    start >= 2 && grew(start) && grew(start - 1) && regular(start)
+    (start.saturating_sub(2).max(1)..=start).filter(grew).count() >= 2
 }
 
 /// First instant [s] at which the model rolls free in a decay whose first half cycle is `first`.
@@ -86,7 +90,15 @@ pub(super) fn start_s(first: &HalfCycle, roll: &Track, ripple: Ripple) -> f64 {
 }
 
 /// What `next` means for a decay that has lasted for the half cycles of `chain`, at least two.
-pub(super) fn judge(chain: &[HalfCycle], next: &HalfCycle, ripple: Ripple) -> Verdict {
+///
+/// After a hand has rocked the model up (`rocked`), its first half cycle must follow the law of
+/// the later ones closely.
+pub(super) fn judge(
+    chain: &[HalfCycle],
+    next: &HalfCycle,
+    ripple: Ripple,
+    rocked: bool,
+) -> Verdict {
     let [.., last] = chain else { return Verdict::Continues };
     let (due, amplitude_rad) = (due_rad(chain), next.amplitude_rad());
     let ratio = amplitude_rad / last.amplitude_rad();
@@ -106,7 +118,11 @@ pub(super) fn judge(chain: &[HalfCycle], next: &HalfCycle, ripple: Ripple) -> Ve
     }
     if let [first, second] = chain {
         let first_ratio = second.amplitude_rad() / first.amplitude_rad();
-        if first_ratio > ratio + RATIO_RISE + 1.5 * tolerance {
+        let first_period = second.duration_s() / first.duration_s();
+        let (rise, change) = if rocked { (ROCKED_RISE, ROCKED_CHANGE) } else { (RATIO_RISE, 1.0) };
+        if first_ratio > ratio + rise + 1.5 * tolerance
+            || (first_period - 1.0).abs() > change + tolerance
+        {
             return Verdict::DropsFirst;
         }
     }
@@ -130,15 +146,26 @@ pub(super) fn due_rad(chain: &[HalfCycle]) -> f64 {
     last.amplitude_rad() * total.powf(1.0 / (recent.len() - 1) as f64)
 }
 
-/// When [s] the amplitude falls below the noise after the last half cycle of `chain`, by its last
-/// ratios, at most a period later.
+/// When [s] the amplitude falls below the noise near the end of `chain`, by the line through the
+/// logarithms of its last amplitudes.
 pub(super) fn lost_s(chain: &[HalfCycle], ripple: Ripple) -> f64 {
     let Some(last) = chain.last() else { return f64::NEG_INFINITY };
+    let recent = &chain[chain.len().saturating_sub(8)..];
+    let points = || {
+        let middle = |h: &HalfCycle| 0.5 * (h.start.left_s + h.end.time_s) - last.end.time_s;
+        recent.iter().map(move |h| (middle(h), h.amplitude_rad().ln()))
+    };
+    let n = recent.len() as f64;
+    let mean_s = points().map(|p| p.0).sum::<f64>() / n;
+    let mean_ln = points().map(|p| p.1).sum::<f64>() / n;
+    let slope = points().map(|p| (p.0 - mean_s) * p.1).sum::<f64>()
+        / points().map(|p| (p.0 - mean_s).powi(2)).sum::<f64>();
     let half_s = half_period_s(chain);
-    let fall = (last.amplitude_rad() / due_rad(chain)).ln().max(0.01);
-    let left = (last.amplitude_rad() / ripple.lost_below_rad.max(f64::MIN_POSITIVE)).ln();
-    // The amplitude of a half cycle is that of its middle.
-    last.end.time_s + half_s * (left / fall - 0.5).clamp(0.0, 2.0)
+    // With less than three half cycles, or none that falls, the last turning point must do.
+    let after_s = (mean_s + (ripple.lost_below_rad.ln() - mean_ln) / slope)
+        .clamp(-1.5 * half_s, 2.0 * half_s);
+    let falls = slope < 0.0 && after_s.is_finite();
+    last.end.time_s + if falls { after_s } else { 0.0 }
 }
 
 /// Half period [s] of the last half cycles.
@@ -195,7 +222,7 @@ mod tests {
         let ripple = Ripple { lost_below_rad: 0.15_f64.to_radians(), ..Ripple::default() };
         let halves = chain(turns_deg);
         let (next, before) = halves.split_last().unwrap();
-        judge(before, next, ripple)
+        judge(before, next, ripple, false)
     }
 
     #[test]

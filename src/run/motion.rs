@@ -42,7 +42,12 @@ pub(super) struct Motion {
     /// Half cycles after a forced run that may be a single outlier.
     doubtful: Vec<Cycle>,
     unused: Option<Unused>,
+    /// Why no decay can begin until the model is still, held or struck.
     distrust: Option<&'static str>,
+    /// The pass ended while the model rolled.
+    pass_ended: bool,
+    /// A hand rocked the model up to the decay under way.
+    rocked: bool,
     /// The rod drove the model, and still may.
     rod_on: bool,
 }
@@ -133,16 +138,9 @@ impl Motion {
     }
 
     fn search(&mut self, cycle: Cycle, closer: &mut Closer) {
-        self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle)).extend(&cycle);
-        if let Some(before) = self.cycles.last() {
-            let growth = cycle.half.amplitude_rad() / before.half.amplitude_rad();
-            if growth > 1.06 && !(before.steady && cycle.steady) {
-                self.distrust =
-                    Some("the roll was still disturbed by the carriage's change of speed");
-            } else if growth > NEW_START && self.cycles.len() > 1 {
-                self.distrust = None;
-            }
-        }
+        self.trust_or_not(&cycle);
+        let distrust = self.distrust;
+        self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle, distrust)).extend(&cycle);
         if !cycle.is_driven() {
             self.rod_on = false;
         }
@@ -152,10 +150,29 @@ impl Motion {
         }
         let ripple = closer.records.ripple();
         let recorded = closer.records.drive.is_recorded();
-        if let Some(start) = forced::settled(&self.cycles, recorded, ripple) {
+        let spent = self.pass_ended && closer.records.carriage.has_slowed(cycle.half.end.time_s);
+        if spent {
+        } else if let Some(start) = forced::settled(&self.cycles, recorded, ripple) {
             self.begin(State::Forced, start, closer);
-        } else if let Some(start) = self.decay_start(closer) {
+        } else if self.distrust.is_none()
+            && let Some(start) = self.decay_start(closer)
+        {
+            self.rocked = decay::is_rocked_up(&self.halves(), start);
             self.begin(State::Decay, start, closer);
+        }
+    }
+
+    /// Notes what makes a decay doubtful, and forgets it at a new start.
+    fn trust_or_not(&mut self, cycle: &Cycle) {
+        let Some(before) = self.cycles.last() else { return };
+        let growth = cycle.half.amplitude_rad() / before.half.amplitude_rad();
+        let steady = before.steady && cycle.steady;
+        if growth > 1.06 && !steady {
+            self.distrust = Some("the roll was still disturbed by the change of speed");
+        } else if steady && self.cycles.len() > 1 && growth > NEW_START
+            || cycle.steady && cycle.half.is_from_hold()
+        {
+            self.distrust = None;
         }
     }
 
@@ -174,13 +191,7 @@ impl Motion {
             a.steady && b.steady && decay::begins(&a.half, &b.half, ripple)
         };
         let n = self.cycles.len();
-        let mut start = (1..n).rev().take_while(begins).last()? - 1;
-        if decay::is_rocked_up(&self.halves(), start) {
-            start += 1;
-        }
-        if n - start < 2 {
-            return None;
-        }
+        let start = (1..n).rev().take_while(begins).last()? - 1;
         let chain = &self.cycles[start..];
         let driven = chain.last().is_some_and(Cycle::is_driven);
         (!driven || (!self.rod_on && forced::drive_follows_decay(chain))).then_some(start)
@@ -193,7 +204,7 @@ impl Motion {
         let grabbed = driven(&cycle)
             && self.cycles.last().is_some_and(driven)
             && !forced::drive_follows_decay(&self.cycles);
-        let verdict = decay::judge(&halves, &cycle.half, ripple);
+        let verdict = decay::judge(&halves, &cycle.half, ripple, self.rocked);
         match verdict {
             _ if grabbed => {
                 let end_s = self.cycles.last().map_or(0.0, |c| c.half.start.time_s);
@@ -222,7 +233,7 @@ impl Motion {
             && let Some(start) = forced::settled(&self.cycles, false, ripple)
         {
             let first = self.cycles[0];
-            self.unused.get_or_insert_with(|| Unused::from_cycle(&first));
+            self.unused.get_or_insert_with(|| Unused::from_cycle(&first, None));
             for cycle in &self.cycles[..start] {
                 self.unused.iter_mut().for_each(|unused| unused.extend(cycle));
             }
@@ -254,9 +265,9 @@ impl Motion {
         let mut cycles = std::mem::take(&mut self.cycles);
         let ripple = closer.records.ripple();
         if kind == RunKind::Forced {
-            let n = forced::n_not_yet_steady(&cycles, ripple);
+            let n = forced::n_not_yet_steady(&cycles, &closer.records.roll, ripple);
             for cycle in cycles.drain(..n) {
-                self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle)).extend(&cycle);
+                self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle, None)).extend(&cycle);
             }
         }
         let Some(first) = cycles.first() else { return };
@@ -266,11 +277,16 @@ impl Motion {
         };
         self.flush(start_s, closer);
         let (end, end_s, why) = closer.usable_end(kind, &cycles, end, end_s);
-        let stretch =
-            Stretch { kind, start_s, end_s, end, cycles: &cycles, distrust: self.distrust };
+        let stretch = Stretch { kind, start_s, end_s, end, cycles: &cycles };
         let event = stretch.close(closer.records, closer.limits);
         closer.events.push(event);
         self.rod_on = kind == RunKind::Forced;
+        self.pass_ended |= end == RunEnd::PassEnded;
+        self.distrust = match end {
+            RunEnd::Caught => Some("the roll after a touch is not free without another release"),
+            RunEnd::PassEnded => Some("the roll was still disturbed by the change of speed"),
+            _ => None,
+        };
         self.state = State::Searching;
         self.unused = Some(Unused::new(end_s, Cause::After(end, why)));
         for cycle in cycles.iter().chain(&self.doubtful).filter(|c| c.half.end.time_s > end_s) {
