@@ -1,4 +1,5 @@
 //! Stories.
+#![expect(clippy::print_stdout, reason = "a failing story shows what it saw")]
 
 mod dense_posterior;
 mod run_finding_kvlcc2;
@@ -14,3 +15,9 @@ mod synthetic_roll;
 mod the_json_contract_holds;
 mod the_report_is_complete_and_self_contained;
 mod the_tables_and_the_catalogue_agree_with_the_results;
+mod run_finding_decays;
+mod run_finding_forced;
+mod run_finding_kvlcc2;
+mod run_finding_scene;
+mod the_simulated_tank_keeps_its_script;
+mod the_simulated_tank_writes_campaigns;
