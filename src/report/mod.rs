@@ -1,1 +1,107 @@
 //! What the customer gets: pages with figures, tables, the JSON contract.
+
+mod campaign_page;
+mod csv_tables;
+mod damping_table;
+mod document;
+mod field_units;
+pub(crate) mod figure;
+mod glossary;
+mod json;
+mod notation;
+mod number;
+mod run_page;
+mod whole_file;
+
+use std::path::{Path, PathBuf};
+
+pub use csv_tables::csv_tables;
+pub use damping_table::damping_table;
+pub use json::{IDENTIFICATION_SCHEMA, identification_json};
+
+use crate::campaign::Campaign;
+use crate::results::{IdentifiedRun, Overview, RejectedStretch, Results};
+
+/// Why a report could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The disk refused a file.
+    #[error(
+        "report file \"{}\": {source}\n\
+         hint: check that the results folder can be written and that the disk is not full",
+        path.display()
+    )]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A run's name would lead out of the report folder.
+    #[error(
+        "run \"{id}\" cannot name a report file\n\
+         hint: a run id has no path separator, is not empty and does not begin with a dot"
+    )]
+    RunId {
+        /// The run's id.
+        id: String,
+    },
+    /// A table could not be written as CSV.
+    #[error("table \"{name}\": {source}")]
+    Table {
+        /// Name of the table's file.
+        name: &'static str,
+        /// What the writer said.
+        source: csv::Error,
+    },
+}
+
+/// Writes the page of one run to `dir` as soon as the run is identified; returns its path.
+///
+/// Stretches of the recording that were rejected are marked once [`write_all`] knows them.
+pub fn write_run(
+    campaign: &Campaign,
+    run: &IdentifiedRun,
+    overview: Option<&Overview>,
+    dir: &Path,
+) -> Result<PathBuf, ReportError> {
+    write_marked_run(campaign, run, overview, &[], dir)
+}
+
+/// Writes the campaign's page, `index.html`, to `dir`; returns its path.
+pub fn write_campaign(
+    campaign: &Campaign,
+    results: &Results,
+    dir: &Path,
+) -> Result<PathBuf, ReportError> {
+    for run in &results.runs {
+        document::run_file_name(&run.id)?;
+    }
+    let page = campaign_page::html(campaign, results);
+    whole_file::write(dir, "index.html", page.into_string().as_bytes())
+}
+
+/// Writes the page of every run and the campaign's page to `dir`; returns the campaign's page.
+pub fn write_all(
+    campaign: &Campaign,
+    results: &Results,
+    dir: &Path,
+) -> Result<PathBuf, ReportError> {
+    for run in &results.runs {
+        let overview = results.overviews.iter().find(|seen| seen.recording == run.recording);
+        write_marked_run(campaign, run, overview, &results.rejected, dir)?;
+    }
+    write_campaign(campaign, results, dir)
+}
+
+fn write_marked_run(
+    campaign: &Campaign,
+    run: &IdentifiedRun,
+    overview: Option<&Overview>,
+    rejected: &[RejectedStretch],
+    dir: &Path,
+) -> Result<PathBuf, ReportError> {
+    let name = document::run_file_name(&run.id)?;
+    let page = run_page::html(campaign, run, overview, rejected);
+    whole_file::write(dir, &name, page.into_string().as_bytes())
+}

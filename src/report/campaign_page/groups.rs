@@ -1,0 +1,60 @@
+//! Runs grouped by a nominal value, such as the Froude number they were meant to have.
+
+use crate::report::figure::{Axis, Figure, Ink, Panel};
+use crate::report::notation;
+
+/// Values `(x, y, lo, hi)` of one group with the group's mean.
+pub(super) type Group = (f64, Vec<(f64, f64, f64, f64)>);
+
+/// Groups `(key, point)` pairs: a key further than `apart` from the next smaller begins a group.
+pub(super) fn by_value(mut points: Vec<(f64, (f64, f64, f64, f64))>, apart: f64) -> Vec<Group> {
+    points.retain(|(key, _)| key.is_finite());
+    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.0.total_cmp(&b.1.0)));
+    let mut groups: Vec<(Vec<f64>, Vec<(f64, f64, f64, f64)>)> = Vec::new();
+    for (key, point) in points {
+        match groups.last_mut() {
+            Some((keys, group)) if keys.last().is_some_and(|last| key - last <= apart) => {
+                keys.push(key);
+                group.push(point);
+            }
+            _ => groups.push((vec![key], vec![point])),
+        }
+    }
+    groups
+        .into_iter()
+        .map(|(keys, group)| (keys.iter().sum::<f64>() / keys.len() as f64, group))
+        .collect()
+}
+
+/// One figure with a series of joined error bars per group.
+pub(super) fn figure(
+    id: String,
+    title: String,
+    axes: (Axis, Axis),
+    groups: &[Group],
+    label: impl Fn(f64) -> String,
+) -> Figure {
+    let (x, y) = axes;
+    let mut panel = Panel::new(y).height(240);
+    for (index, (key, points)) in groups.iter().enumerate() {
+        let (xs, ys): (Vec<_>, Vec<_>) = points.iter().map(|point| (point.0, point.1)).unzip();
+        panel = panel
+            .line(&xs, &ys, Ink::of_series(index).wide(0.8))
+            .error_bars(points, Ink::of_series(index).named(label(*key)));
+    }
+    Figure::new(id, notation::plain(&title), x).panel(panel)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn speeds_that_differ_by_the_carriage_s_unsteadiness_are_one_group() {
+        let point = (0.0, 0.0, 0.0, 0.0);
+        let froude = [0.2003, 0.0, 0.1997, 0.3, f64::NAN];
+        let groups = by_value(froude.map(|fr| (fr, point)).to_vec(), 0.01);
+        let keys: Vec<_> = groups.iter().map(|group| (group.0 * 1e4).round()).collect();
+        assert_eq!(keys, [0.0, 2000.0, 3000.0]);
+    }
+}

@@ -1,0 +1,96 @@
+//! The page of the campaign: its parts in reading order.
+
+mod conditions;
+mod damping_against_froude;
+mod equivalent_damping;
+mod forced_damping;
+mod forced_runs;
+mod froude_law;
+mod groups;
+mod inertia;
+mod losses;
+mod particulars;
+mod peak_moment;
+mod rejected;
+mod runs;
+
+use maud::{Markup, html};
+
+use super::{document, field_units::FieldUnits, glossary};
+use crate::campaign::Campaign;
+use crate::inverse::identification::ForcedResponse;
+use crate::results::{IdentifiedRun, Results};
+
+/// Every part, in reading order; a part without data is left out.
+const PARTS: [fn(&CampaignPage) -> Option<Markup>; 12] = [
+    particulars::part,
+    conditions::part,
+    damping_against_froude::part,
+    froude_law::part,
+    equivalent_damping::part,
+    runs::part,
+    inertia::part,
+    peak_moment::part,
+    forced_damping::part,
+    forced_runs::part,
+    rejected::part,
+    losses::part,
+];
+
+/// What the parts of the page are made from.
+#[derive(Debug, Clone, Copy)]
+struct CampaignPage<'a> {
+    campaign: &'a Campaign,
+    results: &'a Results,
+}
+
+impl<'a> CampaignPage<'a> {
+    /// Conditions that have runs, in the order in which the campaign names them.
+    fn conditions(&self) -> Vec<&'a str> {
+        let named = self.campaign.recordings.iter().map(|recording| recording.condition.as_str());
+        let seen = self.results.runs.iter().map(|run| run.condition.as_str());
+        let mut conditions: Vec<&str> = Vec::new();
+        for condition in named.chain(seen) {
+            if !conditions.contains(&condition) && self.runs_of(condition).next().is_some() {
+                conditions.push(condition);
+            }
+        }
+        conditions
+    }
+
+    fn runs_of(&self, condition: &str) -> impl Iterator<Item = &'a IdentifiedRun> {
+        self.results.runs.iter().filter(move |run| run.condition == condition)
+    }
+
+    /// Forced runs of a condition with their response.
+    fn forced_of(&self, condition: &str) -> Vec<(&'a IdentifiedRun, &'a ForcedResponse)> {
+        self.runs_of(condition)
+            .filter_map(|run| Some((run, run.identification.forced.as_ref()?)))
+            .collect()
+    }
+
+    fn field_units(&self, run: &'a IdentifiedRun) -> FieldUnits<'a> {
+        FieldUnits::new(self.campaign, run)
+    }
+}
+
+/// The page of the campaign.
+pub(super) fn html(campaign: &Campaign, results: &Results) -> Markup {
+    let page = CampaignPage { campaign, results };
+    let body = html! {
+        h1 { (campaign.name) }
+        p.lead { "Roll damping identified from " (results.runs.len()) " run"
+            @if results.runs.len() != 1 { "s" } " in "
+            (results.overviews.len().max(campaign.recordings.len())) " recordings; "
+            (results.rejected.len()) " stretches not used." }
+        @if results.runs.is_empty() {
+            p.warning { "No run was identified; the reasons are listed below." }
+        }
+        @for part in PARTS {
+            @if let Some(part) = part(&page) { (part) }
+        }
+        (glossary::conventions())
+        (glossary::symbols())
+    };
+    document::page(&campaign.name, &body)
+}

@@ -1,0 +1,186 @@
+//! The results as CSV tables, one unit per column.
+
+use std::path::{Path, PathBuf};
+
+use super::field_units::FieldUnits;
+use super::{ReportError, json, whole_file};
+use crate::campaign::Campaign;
+use crate::inverse::estimate::Estimate;
+use crate::results::Results;
+
+/// One table: its file, its headers, its rows.
+struct Table {
+    name: &'static str,
+    headers: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+/// Writes the results as CSV tables to `dir`; returns the paths.
+///
+/// Numbers have as many digits as they need to be read back exactly; what is not known is empty.
+pub fn csv_tables(
+    campaign: &Campaign,
+    results: &Results,
+    dir: &Path,
+) -> Result<Vec<PathBuf>, ReportError> {
+    [
+        runs(campaign, results),
+        equivalent_damping(campaign, results),
+        rejected(results),
+        froude_law(results),
+    ]
+    .into_iter()
+    .map(|table| {
+        let name = table.name;
+        let bytes = bytes(&table).map_err(|source| ReportError::Table { name, source })?;
+        whole_file::write(dir, name, &bytes)
+    })
+    .collect()
+}
+
+fn bytes(table: &Table) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&table.headers)?;
+    for row in &table.rows {
+        writer.write_record(row)?;
+    }
+    writer.into_inner().map_err(|unwritten| unwritten.into_error().into())
+}
+
+fn runs(campaign: &Campaign, results: &Results) -> Table {
+    let mut headers = words(&[
+        "id",
+        "recording",
+        "kind",
+        "condition",
+        "start [s]",
+        "end [s]",
+        "Fr [-]",
+        "speed [m/s]",
+    ]);
+    for (name, unit) in [
+        ("natural frequency", "rad/s"),
+        ("b1", "1/s"),
+        ("b3", "s"),
+        ("b_eq at 5 deg", "1/s"),
+        ("inertia used", "kg m2"),
+        ("excitation frequency", "rad/s"),
+        ("roll amplitude", "rad"),
+        ("peak moment", "rad/s2"),
+        ("work damping", "N m s"),
+    ] {
+        headers.extend(estimate_headers(name, unit));
+    }
+    headers.extend(words(&["b1 b3 correlation [-]", "resimulation rmse [deg]"]));
+    let rows = results.runs.iter().map(|run| {
+        let identification = &run.identification;
+        let units = FieldUnits::new(campaign, run);
+        let forced = identification.forced.as_ref();
+        let mut row = vec![
+            run.id.clone(),
+            run.recording.clone(),
+            json::kind_name(run.run.kind).to_owned(),
+            run.condition.clone(),
+        ];
+        row.extend([run.run.start_s, run.run.end_s, run.froude, run.speed_m_s].map(number));
+        for estimate in [
+            Some(identification.natural_frequency_rad_s),
+            Some(identification.damping.b1_per_s),
+            Some(identification.damping.b3_s),
+            units.at_comparison().map(|at| at.fitted_per_s),
+            Some(units.inertia_kg_m2()),
+            forced.map(|forced| forced.frequency_rad_s),
+            forced.map(|forced| forced.roll_amplitude_rad),
+            forced.map(|forced| forced.peak_moment_per_s2),
+            forced.map(|forced| forced.work_damping_n_m_s),
+        ] {
+            row.extend(estimate_cells(estimate));
+        }
+        row.push(number(identification.damping.correlation));
+        row.push(number(identification.resimulation.rmse_rad.to_degrees()));
+        row
+    });
+    Table { name: "runs.csv", headers, rows: rows.collect() }
+}
+
+fn equivalent_damping(campaign: &Campaign, results: &Results) -> Table {
+    let mut headers = words(&["id", "condition", "Fr [-]", "amplitude [deg]", "extrapolated"]);
+    for (name, unit) in [
+        ("b_eq law", "1/s"),
+        ("b_eq local", "1/s"),
+        ("B_eq", "N m s"),
+        ("B44hat", "-"),
+        ("zeta", "-"),
+        ("half-cycle decrement", "-"),
+    ] {
+        headers.extend(estimate_headers(name, unit));
+    }
+    let mut rows = Vec::new();
+    for run in &results.runs {
+        let units = FieldUnits::new(campaign, run);
+        for at in &run.identification.equivalent_damping {
+            let b = at.fitted_per_s;
+            let mut row = vec![run.id.clone(), run.condition.clone()];
+            row.extend([run.froude, at.amplitude_deg].map(number));
+            row.push(at.extrapolated.to_string());
+            for estimate in [
+                Some(b),
+                at.local_per_s,
+                Some(units.moment(b)),
+                Some(units.b44_hat(b)),
+                Some(units.damping_ratio(b)),
+                Some(units.half_cycle_decrement(b)),
+            ] {
+                row.extend(estimate_cells(estimate));
+            }
+            rows.push(row);
+        }
+    }
+    Table { name: "equivalent_damping.csv", headers, rows }
+}
+
+fn rejected(results: &Results) -> Table {
+    let rows = results.rejected.iter().map(|stretch| {
+        vec![
+            stretch.recording.clone(),
+            number(stretch.start_s),
+            number(stretch.end_s),
+            stretch.reason.clone(),
+        ]
+    });
+    let headers = words(&["recording", "start [s]", "end [s]", "reason"]);
+    Table { name: "rejected.csv", headers, rows: rows.collect() }
+}
+
+fn froude_law(results: &Results) -> Table {
+    let mut headers = words(&["condition"]);
+    for (name, unit) in [("b0", "1/s"), ("kappa", "-"), ("b3", "s"), ("scatter of b1", "1/s")] {
+        headers.extend(estimate_headers(name, unit));
+    }
+    let rows = results.froude_laws.iter().map(|law| {
+        let mut row = vec![law.condition.clone()];
+        for estimate in [law.b0_per_s, law.kappa, law.b3_s, law.scatter_per_s] {
+            row.extend(estimate_cells(Some(estimate)));
+        }
+        row
+    });
+    Table { name: "froude_law.csv", headers, rows: rows.collect() }
+}
+
+fn words(names: &[&str]) -> Vec<String> {
+    names.iter().map(|&name| name.to_owned()).collect()
+}
+
+fn estimate_headers(name: &str, unit: &str) -> [String; 4] {
+    ["mean", "sd", "lo95", "hi95"].map(|part| format!("{name} {part} [{unit}]"))
+}
+
+fn estimate_cells(estimate: Option<Estimate>) -> [String; 4] {
+    estimate.map_or_else(Default::default, |estimate| {
+        [estimate.mean, estimate.sd, estimate.lo95, estimate.hi95].map(number)
+    })
+}
+
+fn number(value: f64) -> String {
+    if value.is_finite() { value.to_string() } else { String::new() }
+}

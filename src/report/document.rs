@@ -1,0 +1,129 @@
+//! The frame of every page: head, style, sections, tables.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::{ReportError, notation, number};
+use crate::inverse::estimate::Estimate;
+
+/// The style sheet, which is part of every page.
+const STYLE: &str = include_str!("page.css");
+
+/// A whole page; it needs nothing beside itself.
+pub(super) fn page(title: &str, body: &Markup) -> Markup {
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                (body)
+                footer {
+                    "Written by rolltank " (env!("CARGO_PKG_VERSION"))
+                    ". SI units, model scale; intervals are central 95 % credible intervals."
+                }
+            }
+        }
+    }
+}
+
+/// A section with its heading; `id` is unique on its page.
+pub(super) fn section(id: &str, heading: &str, content: &Markup) -> Markup {
+    html! { section id=(id) { h2 { (heading) } (content) } }
+}
+
+/// A column: its heading and its unit, empty for a column without one.
+pub(super) type Column<'a> = (&'a str, &'a str);
+
+/// A table with a caption, one markup per row holding its cells.
+pub(super) fn table(id: &str, caption: &str, columns: &[Column], rows: &[Markup]) -> Markup {
+    html! {
+        div.table {
+            table id=(id) {
+                caption { (notation::html(caption)) }
+                thead { tr {
+                    @for (name, unit) in columns {
+                        th scope="col" {
+                            (notation::html(name))
+                            @if !unit.is_empty() { " " span.unit { "[" (unit) "]" } }
+                        }
+                    }
+                } }
+                tbody { @for row in rows { tr { (row) } } }
+            }
+        }
+    }
+}
+
+/// A cell with an estimate, its interval on the line below.
+pub(super) fn estimate_cell(estimate: Option<&Estimate>) -> Markup {
+    html! {
+        @if let Some(estimate) = estimate {
+            td.number.stacked {
+                (typeset(&number::mean(estimate))) " "
+                span.interval { (typeset(&number::interval(estimate))) }
+            }
+        } @else {
+            td.number { (number::UNKNOWN) }
+        }
+    }
+}
+
+/// A cell with a number that is already rounded.
+pub(super) fn number_cell(text: &str) -> Markup {
+    html! { td.number { (typeset(text)) } }
+}
+
+/// A cell with words.
+pub(super) fn text_cell(text: &str) -> Markup {
+    html! { td { (notation::html(text)) } }
+}
+
+/// A number with the printer's minus sign.
+pub(super) fn typeset(number: &str) -> String {
+    number.replace('-', "\u{2212}")
+}
+
+/// File name of the page of a run.
+pub(super) fn run_file_name(id: &str) -> Result<String, ReportError> {
+    let inside = !id.is_empty() && !id.starts_with('.') && !id.contains(['/', '\\', '\0']);
+    if inside {
+        Ok(format!("run-{id}.html"))
+    } else {
+        Err(ReportError::RunId { id: id.to_owned() })
+    }
+}
+
+/// The same name in a link, every byte outside the unreserved set of RFC 3986 written as `%XX`.
+pub(super) fn run_link(id: &str) -> String {
+    let mut link = String::from("run-");
+    for byte in id.bytes() {
+        if byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'.' | b'_' | b'~') {
+            link.push(char::from(byte));
+        } else {
+            link.push_str(&format!("%{byte:02X}"));
+        }
+    }
+    link + ".html"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_id_cannot_lead_out_of_the_folder() {
+        for id in ["", "../x", "a/b", "..", "a\\b", ".hidden"] {
+            assert!(run_file_name(id).is_err(), "{id}");
+        }
+        assert_eq!(run_file_name("pass_03-2").unwrap(), "run-pass_03-2.html");
+    }
+
+    #[test]
+    fn a_link_is_valid_for_any_id() {
+        assert_eq!(run_link("fähre 3"), "run-f%C3%A4hre%203.html");
+    }
+}

@@ -1,0 +1,46 @@
+//! Damping against roll rate with the fitted law (Fig. 12).
+
+use maud::Markup;
+
+use super::RunPage;
+use crate::report::document::section;
+use crate::report::field_units::fitted_damping;
+use crate::report::figure::{Axis, Figure, Hue, Ink, Panel, Shape};
+
+/// Points of the fitted law, an odd number so that zero is one of them.
+const N_LAW: i32 = 81;
+
+pub(super) fn part(page: &RunPage) -> Option<Markup> {
+    let (moment, fit) = (&page.identification().moment, &page.identification().damping);
+    let rate_max = moment.roll_rate_rad_per_s.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
+    if rate_max <= 0.0 || moment.mean_per_s2.is_empty() {
+        return None;
+    }
+    let damping: Vec<_> = moment.mean_per_s2.iter().map(|u| -u).collect();
+    let half = N_LAW / 2;
+    let rate: Vec<_> = (-half..=half).map(|k| rate_max * f64::from(k) / f64::from(half)).collect();
+    let law: Vec<_> = rate.iter().map(|&rate| fitted_damping(fit, rate)).collect();
+    let panel = Panel::new(Axis::new("B/(I+ΔI) = −U [rad/s²]"))
+        .height(300)
+        .points(
+            &moment.roll_rate_rad_per_s,
+            &damping,
+            Ink::new(Hue::Grey).shaped(Shape::Dot).named("posterior mean, sample by sample"),
+        )
+        .band(
+            &rate,
+            &law.iter().map(|at| at.lo95).collect::<Vec<_>>(),
+            &law.iter().map(|at| at.hi95).collect::<Vec<_>>(),
+            Ink::new(Hue::Vermillion).named("95 % band of the law"),
+        )
+        .line(
+            &rate,
+            &law.iter().map(|at| at.mean).collect::<Vec<_>>(),
+            Ink::new(Hue::Vermillion).wide(1.8).named("b₁ φ′ + b₃ φ′³"),
+        );
+    let figure =
+        Figure::new("scatter", "Damping against roll rate", Axis::new("roll rate φ′ [rad/s]"))
+            .caption("A loop instead of a curve would mean a moment in phase with the roll angle.")
+            .panel(panel);
+    Some(section("scatter-section", "Damping against roll rate", &figure.markup()))
+}
