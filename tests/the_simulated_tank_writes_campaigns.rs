@@ -1,0 +1,145 @@
+//! Campaign folders from scenarios: the paper's, the documented one, and those that are refused.
+
+use rolltank::tank::{Scenario, TrueKind, paper, simulate_pass, truth_path, write_campaign};
+
+const DOCUMENTED: &str = include_str!("../docs/scenario.md");
+
+fn documented() -> &'static str {
+    let (_, rest) = DOCUMENTED.split_once("```toml").expect("an example in the page");
+    rest.split_once("```").expect("an end to the example").0
+}
+
+/// The documented scenario with one thing changed.
+fn changed(from: &str, to: &str) -> String {
+    assert!(documented().contains(from), "\"{from}\" is not in the example");
+    documented().replacen(from, to, 1)
+}
+
+fn refusal(text: &str) -> String {
+    Scenario::parse(text, "morning.toml").expect_err("a mistake in the file").to_string()
+}
+
+#[test]
+fn the_documented_example_parses_and_every_pass_of_it_holds_runs() {
+    let scenario = Scenario::parse(documented(), "docs/scenario.md").unwrap();
+    assert_eq!(scenario.pass_count(), 5);
+    for index in 0..scenario.pass_count() {
+        let pass = simulate_pass(&scenario, index, 1);
+        assert!(!pass.truth.runs.is_empty(), "no run in {}", pass.name);
+        assert!(pass.samples.iter().all(|s| s.value.is_finite()));
+        assert!(pass.samples.windows(2).all(|pair| pair[0].time_s <= pair[1].time_s));
+    }
+}
+
+#[test]
+fn the_papers_campaign_has_a_decay_for_each_row_of_table_2_and_the_whole_forced_ladder() {
+    let scenario = Scenario::builtin("paper").unwrap().checked().unwrap();
+    let passes: Vec<_> =
+        (0..scenario.pass_count()).map(|index| simulate_pass(&scenario, index, 3).truth).collect();
+    for (name, rows) in [("bare hull", paper::BARE_HULL), ("bilge keels", paper::BILGE_KEELS)] {
+        let of = |kind| {
+            let mine = passes.iter().filter(|p| p.condition == name);
+            mine.flat_map(|p| &p.runs).filter(move |r| r.kind == kind)
+        };
+        let decays: Vec<_> = of(TrueKind::Decay).collect();
+        assert_eq!(decays.len(), 5);
+        for (run, row) in decays.iter().zip(rows) {
+            assert!((run.froude - row.froude).abs() < 1e-12);
+            assert!((run.b1_per_s - row.b1_per_s).abs() < 1e-12);
+            assert!((run.b3_s - row.b3_s).abs() < 1e-12);
+        }
+        for row in rows {
+            let speeds = of(TrueKind::Forced).filter(|r| (r.froude - row.froude).abs() < 1e-9);
+            let runs: Vec<_> = speeds.collect();
+            assert_eq!(runs.len(), 7, "{name} at Fr {}", row.froude);
+            for run in runs {
+                let period_s = std::f64::consts::TAU / run.excitation_rad_s.unwrap();
+                assert!(run.end_s - run.start_s > 7.9 * period_s, "too few periods: {run:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_campaign_is_written_once_with_its_truth_beside_it() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("morning");
+    let scenario = Scenario::parse(documented(), "docs/scenario.md").unwrap();
+    let mut told = Vec::new();
+    write_campaign(&scenario, 5, &folder, &mut |done, total| told.push((done, total))).unwrap();
+    assert_eq!(told, [(0, 5), (1, 5), (2, 5), (3, 5), (4, 5), (5, 5)]);
+    let truth = std::fs::read_to_string(truth_path(&folder).unwrap()).unwrap();
+    assert!(truth.contains("\"schema\": \"rolltank.truth/1\"") && truth.contains("\"b1_per_s\""));
+    let campaign = std::fs::read_to_string(folder.join("campaign.toml")).unwrap();
+    assert!(campaign.contains("roll = \"runs/troubled_roll.csv\""), "{campaign}");
+    assert!(!campaign.contains("b1_per_s"), "the truth stays outside the folder");
+    let roll = std::fs::read_to_string(folder.join("runs/pass_01_roll.csv")).unwrap();
+    assert!(roll.starts_with("t;roll\n0;"), "{}", &roll[..40]);
+    let again = write_campaign(&scenario, 5, &folder, &mut |_, _| ()).unwrap_err().to_string();
+    assert!(again.contains("is not empty\nhint: "), "{again}");
+}
+
+#[test]
+fn equal_seeds_give_equal_samples_and_other_seeds_do_not() {
+    let scenario = Scenario::parse(documented(), "docs/scenario.md").unwrap();
+    let samples = |index, seed| simulate_pass(&scenario, index, seed).samples;
+    assert_eq!(samples(0, 11), samples(0, 11));
+    assert_ne!(samples(0, 11), samples(0, 12));
+    assert_ne!(samples(0, 11), samples(1, 11), "repeats have draws of their own");
+}
+
+#[test]
+fn the_scatter_of_a_law_is_drawn_from_pass_to_pass() {
+    let text = changed("condition = \"bare hull\"", "condition = \"bilge keels\"")
+        .replace("repeat = 3", "repeat = 200")
+        .replace("duration_s = 30.0, fade_s = 0.0", "duration_s = 4.0");
+    let scenario = Scenario::parse(&text, "scatter").unwrap();
+    let b1: Vec<f64> =
+        (0..200).map(|index| simulate_pass(&scenario, index, 9).truth.runs[0].b1_per_s).collect();
+    let mean = b1.iter().sum::<f64>() / 200.0;
+    let sd = (b1.iter().map(|b| (b - mean).powi(2)).sum::<f64>() / 199.0).sqrt();
+    // The standard error of the mean is 0.05/sqrt(200), of the sd 0.05/sqrt(400); four of each.
+    assert!((mean - 1.13 * (1.0 + 11.9 * 0.04)).abs() < 0.0142, "{mean}");
+    assert!((sd - 0.05).abs() < 0.01, "{sd}");
+}
+
+#[test]
+fn a_misspelt_key_is_told_with_its_line_and_the_right_spelling() {
+    let message = refusal(&changed("displacement_m3", "displacment_m3"));
+    assert!(message.starts_with("morning.toml:8: unknown field `displacment_m3`"), "{message}");
+    assert!(message.ends_with("hint: did you mean `displacement_m3`?"), "{message}");
+    let message = refusal(&changed("heel_deg = 12.0", "heel_dge = 12.0"));
+    assert!(message.contains("keys in table: heel_dge") && message.contains("`heel_deg`?"));
+    let message = refusal(&changed("{ catch = ", "{ cach = "));
+    assert!(message.ends_with("hint: did you mean `catch`?"), "{message}");
+}
+
+#[test]
+fn a_froude_number_beyond_the_carriage_is_refused_with_the_arithmetic() {
+    let message = refusal(&changed("froude = 0.2", "froude = 1.0"));
+    assert!(message.contains("[[pass]] number 1: a speed of 4.952 m/s exceeds"), "{message}");
+    assert!(message.contains("sqrt(9.81 x 2.5)") && message.contains("0.404"), "{message}");
+    let line = documented().lines().position(|l| l == "[[pass]]").unwrap() + 1;
+    assert!(message.starts_with(&format!("morning.toml:{line}: ")), "{message}");
+}
+
+#[test]
+fn values_outside_their_limits_are_refused_by_name() {
+    let cases = [
+        ("gm_m = 0.074", "gm_m = -0.074", "gm_m = -0.074 is not positive"),
+        ("draft_m = 0.132", "draft_m = nan", "draft_m = NaN is not positive"),
+        ("heel_deg = 12.0", "heel_deg = 120.0", "action 2: hold.heel_deg = 120"),
+        ("repeat = 3", "repeat = 0", "repeat = 0 is outside 1 to 1000"),
+        ("channel = \"roll\"", "channel = \"heave\"", "gap.channel = \"heave\" is not recorded"),
+        ("brake_s = 60.0", "brake_s = 99.0", "overruns the tank"),
+        ("condition = \"bare hull\"", "condition = \"bear\"", "condition \"bear\" is not in"),
+        ("delimiter = \";\"", "delimiter = \",\"", "decimal_comma needs another delimiter"),
+        ("one_file_per_channel = true", "", "different clocks cannot share one table"),
+        ("froude = 0.2 ", "froude = 0.2\nspeed_m_s = 1.0 ", "needs either froude or speed_m_s"),
+        ("name = \"troubled\"", "name = \"a/b\"", "name = \"a/b\" cannot be a file name"),
+    ];
+    for (from, to, expected) in cases {
+        let message = refusal(&changed(from, to));
+        assert!(message.contains(expected) && message.contains("\nhint: "), "{message}");
+    }
+}
