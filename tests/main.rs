@@ -1,4 +1,8 @@
 //! Stories.
 
+mod dense_posterior;
+mod sampler_cases;
+mod sampler_draws_the_exact_posterior;
+mod sampler_says_what_it_did;
 mod the_simulated_tank_keeps_its_script;
 mod the_simulated_tank_writes_campaigns;

@@ -1,3 +1,5 @@
 //! The physics of rolling: pure formulas, no input or output, no randomness.
 
+pub mod damping;
+pub mod equation;
 pub mod exciting_moment;

@@ -1,0 +1,198 @@
+//! The square-root filter: whitens every column of a linear inverse problem in one pass.
+//!
+//! The record is `y = X b + z + noise` with `z` the response of the oscillator to the random part
+//! of the moment. Whatever has a flat prior (initial state, parameters) is a column of `X`, so the
+//! filter starts from a state known to be zero and its gains serve every column alike. Covariances
+//! are kept as triangular roots in units of the roll noise: a step is one small orthogonal
+//! reduction and no digits are lost, however short the step.
+
+use super::matrix::{Matrix, apply, triangular_root};
+use super::transition::{Step, Transition};
+
+/// One column that the filter whitens.
+#[derive(Debug, Clone, Copy)]
+pub enum Column<'a> {
+    /// A record, one value per sample [rad].
+    Record(&'a [f64]),
+    /// The free motion from a unit of one component of the initial state.
+    InitialState(usize),
+}
+
+/// What the filter knew before each sample, kept for the smoother.
+#[derive(Debug, Clone)]
+pub struct Trail<const N: usize> {
+    /// The step that led to the sample (the first one is not used).
+    pub steps: Vec<Step<N>>,
+    /// Triangular root of the predicted covariance.
+    pub roots: Vec<Matrix<N>>,
+    /// Predicted state, sample by sample, `n_columns` each.
+    pub states: Vec<[f64; N]>,
+    /// Innovation, sample by sample, `n_columns` each.
+    pub innovations: Vec<f64>,
+}
+
+/// The whitened columns, reduced to a triangle.
+#[derive(Debug, Clone)]
+pub struct Filtered {
+    /// Sum of the logarithms of the innovation variances.
+    pub log_determinant: f64,
+    /// Number of samples.
+    pub n_samples: usize,
+    /// Upper triangle `R` of the whitened columns, in the order in which they were given.
+    pub triangle: Triangle,
+}
+
+/// Whitens `columns`, whose records are sampled at the scaled times `tau`.
+pub fn filter<const N: usize>(
+    prior: &impl Transition<N>,
+    tau: &[f64],
+    columns: &[Column<'_>],
+    mut trail: Option<&mut Trail<N>>,
+) -> Filtered {
+    let mut states: Vec<[f64; N]> = columns.iter().map(Column::start).collect();
+    let mut triangle = Triangle::new(columns.len());
+    let mut whitened = vec![0.0; columns.len()];
+    let mut root = [[0.0; N]; N];
+    let mut predicted = root;
+    let mut log_determinant = 0.0;
+    let mut last: Option<(f64, Step<N>)> = None;
+    let mut settled = false;
+    for (i, &now) in tau.iter().enumerate() {
+        if i > 0 {
+            let width = now - tau[i - 1];
+            let step = match last {
+                Some((known, step)) if known.to_bits() == width.to_bits() => step,
+                _ => {
+                    settled = false;
+                    prior.step(width)
+                }
+            };
+            last = Some((width, step));
+            for state in &mut states {
+                *state = apply(&step.f, state);
+            }
+            if !settled {
+                let before = predicted;
+                predicted = spread(&step, &root);
+                settled = same(&before, &predicted);
+            }
+        }
+        // The root is triangular, so the roll is its first row's only entry.
+        let reach = predicted[0][0];
+        let variance = 1.0 + reach * reach;
+        let deviation = variance.sqrt();
+        log_determinant += variance.ln();
+        for ((out, state), column) in whitened.iter_mut().zip(&states).zip(columns) {
+            *out = column.at(i) - state[0];
+        }
+        if let Some(trail) = trail.as_deref_mut() {
+            trail.roots.push(predicted);
+            trail.steps.push(last.map_or(Step { f: [[0.0; N]; N], g: [[0.0; N]; N] }, |l| l.1));
+            trail.states.extend_from_slice(&states);
+            trail.innovations.extend_from_slice(&whitened);
+        }
+        for (state, innovation) in states.iter_mut().zip(&mut whitened) {
+            let pull = reach / variance * *innovation;
+            for (x, row) in state.iter_mut().zip(&predicted) {
+                *x += row[0] * pull;
+            }
+            *innovation /= deviation;
+        }
+        triangle.add(&mut whitened);
+        if !settled {
+            root = predicted;
+            for row in &mut root {
+                row[0] /= deviation;
+            }
+        }
+    }
+    Filtered { log_determinant, n_samples: tau.len(), triangle }
+}
+
+impl Column<'_> {
+    fn start<const N: usize>(&self) -> [f64; N] {
+        let mut state = [0.0; N];
+        if let Column::InitialState(component) = self {
+            state[*component] = 1.0;
+        }
+        state
+    }
+
+    fn at(&self, sample: usize) -> f64 {
+        match self {
+            Column::Record(record) => record[sample],
+            Column::InitialState(_) => 0.0,
+        }
+    }
+}
+
+impl<const N: usize> Trail<N> {
+    /// An empty trail.
+    pub fn new() -> Self {
+        Self { steps: Vec::new(), roots: Vec::new(), states: Vec::new(), innovations: Vec::new() }
+    }
+}
+
+impl<const N: usize> Default for Trail<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The root of the covariance after a step.
+fn spread<const N: usize>(step: &Step<N>, root: &Matrix<N>) -> Matrix<N> {
+    let mut columns = [[0.0; N]; 16];
+    for (j, column) in columns.iter_mut().take(N).enumerate() {
+        let from: [f64; N] = std::array::from_fn(|i| root[i][j]);
+        *column = apply(&step.f, &from);
+    }
+    for (j, column) in columns[N..2 * N].iter_mut().enumerate() {
+        *column = std::array::from_fn(|i| step.g[i][j]);
+    }
+    triangular_root(&mut columns[..2 * N])
+}
+
+/// Whether the covariance has stopped changing, so that the gains can be kept.
+fn same<const N: usize>(a: &Matrix<N>, b: &Matrix<N>) -> bool {
+    // A relative change of 1e-13 a step is rounding: the filter forgets within a few periods.
+    a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() <= 1e-13 * b.abs())
+}
+
+/// The upper triangle of a tall matrix, grown row by row with plane rotations.
+#[derive(Debug, Clone)]
+pub struct Triangle {
+    size: usize,
+    entries: Vec<f64>,
+}
+
+impl Triangle {
+    /// The triangle of a matrix of `size` columns without rows.
+    pub fn new(size: usize) -> Self {
+        Self { size, entries: vec![0.0; size * size] }
+    }
+
+    /// Entry of row `i`, column `j`.
+    pub fn at(&self, i: usize, j: usize) -> f64 {
+        self.entries[i * self.size + j]
+    }
+
+    /// Number of columns.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Adds a row, which is used up.
+    pub fn add(&mut self, row: &mut [f64]) {
+        for i in 0..self.size {
+            if row[i] == 0.0 {
+                continue;
+            }
+            let entries = &mut self.entries[i * self.size + i..(i + 1) * self.size];
+            let radius = entries[0].hypot(row[i]);
+            let (cos, sin) = (entries[0] / radius, row[i] / radius);
+            for (entry, value) in entries.iter_mut().zip(&mut row[i..]) {
+                (*entry, *value) = (cos * *entry + sin * *value, cos * *value - sin * *entry);
+            }
+        }
+    }
+}
