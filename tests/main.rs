@@ -1,6 +1,7 @@
 //! Stories.
 
 mod dense_posterior;
+mod run_finding_kvlcc2;
 mod sampler_cases;
 mod sampler_draws_the_exact_posterior;
 mod sampler_says_what_it_did;

@@ -1,5 +1,25 @@
 //! Finding runs in the stream: samples are pushed in, runs and rejections come out, no clock is read.
 
+mod assembly;
+mod bins;
+mod carriage_pass;
+mod decay;
+mod drive;
+mod finder;
+mod forced;
+mod half_cycles;
+mod harmonic;
+mod limits;
+mod motion;
+mod noise;
+mod passed_over;
+mod records;
+mod track;
+mod unused;
+
+pub use finder::RunFinder;
+pub use limits::Limits;
+
 /// Values of one channel with their times, both of the same length.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Series {
@@ -35,6 +55,8 @@ pub enum RunEnd {
     Gap,
     /// The recording ended.
     RecordingEnded,
+    /// The longest run that is kept in memory was reached; what follows is another run.
+    TooLong,
 }
 
 /// The still stretch before a run, from which zeros are taken.

@@ -1,0 +1,183 @@
+//! Follows the carriage through rest, speeding up, steady speed and braking.
+
+use std::collections::VecDeque;
+
+use super::bins::Bin;
+use super::noise::Noise;
+use super::noise::Quantum;
+use super::track::Track;
+
+/// The speed is steady when it stays within a range for this long [s].
+const STEADY_S: f64 = 1.0;
+/// How long after an instant [s] it is known whether the speed was steady then.
+pub(super) const KNOWN_AFTER_S: f64 = STEADY_S + 0.4;
+/// Range of a steady speed within [`STEADY_S`], as a share of the speed.
+const RANGE_SHARE: f64 = 0.04;
+/// Deviation from the steady speed that ends it, as a share of the speed.
+const LEFT_SHARE: f64 = 0.06;
+/// Deviation from the steady speed that is still part of it, as a share of the speed.
+const KEPT_SHARE: f64 = 0.015;
+/// Speeds below this [m/s] do not matter.
+const FLOOR_M_S: f64 = 0.005;
+/// Share by which a bin moves the steady level, so that a slow change is followed: some 3 s.
+const LEVEL_SHARE: f64 = 0.017;
+/// Steady stretches remembered.
+const N_STEADY: usize = 16;
+
+/// A stretch of steady speed, rest included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Steady {
+    start_s: f64,
+    end_s: Option<f64>,
+}
+
+/// How the carriage moved during a stretch of time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Passage {
+    /// Steady throughout, or no speed was recorded.
+    Steady,
+    /// Steady at first, up to this time [s].
+    Ends(f64),
+    /// Not steady at the start.
+    Changing,
+}
+
+/// The speed channel and its steady stretches.
+#[derive(Debug, Default)]
+pub(super) struct CarriagePass {
+    /// Samples of the speed [m/s].
+    pub(super) track: Track,
+    noise: Noise,
+    quantum: Quantum,
+    recent: VecDeque<Bin>,
+    level_m_s: f64,
+    n_outside: usize,
+    steady: VecDeque<Steady>,
+}
+
+impl CarriagePass {
+    /// Takes a speed sample.
+    pub(super) fn push(&mut self, time_s: f64, speed_m_s: f64) {
+        if self.track.hole_before(time_s).is_some() {
+            self.track.interrupt();
+            self.noise.interrupt();
+            self.recent.clear();
+        }
+        self.quantum.push(speed_m_s);
+        if let Some(bin) = self.track.push(time_s, speed_m_s) {
+            self.noise.push(bin.value);
+            self.recent.push_back(bin);
+            while self.recent.front().is_some_and(|b| b.time_s < bin.time_s - 3.0 * STEADY_S) {
+                self.recent.pop_front();
+            }
+            if self.steady.back().is_some_and(|s| s.end_s.is_none()) {
+                self.stay_steady(bin);
+            } else {
+                self.become_steady(bin);
+            }
+        }
+    }
+
+    /// How the carriage moved from `start_s` to `end_s`.
+    pub(super) fn passage(&self, start_s: f64, end_s: f64) -> Passage {
+        if self.track.last_s().is_none() {
+            return Passage::Steady;
+        }
+        let holds = |s: &&Steady| s.start_s <= start_s && s.end_s.is_none_or(|e| start_s < e);
+        match self.steady.iter().find(holds) {
+            Some(Steady { end_s: Some(left_s), .. }) if *left_s < end_s => Passage::Ends(*left_s),
+            Some(_) => Passage::Steady,
+            None => Passage::Changing,
+        }
+    }
+
+    fn ripple_m_s(&self) -> f64 {
+        self.noise.sd() + 0.5 * self.quantum.step()
+    }
+
+    fn become_steady(&mut self, bin: Bin) {
+        let from_s = bin.time_s - STEADY_S;
+        if self.recent.front().is_none_or(|b| b.time_s > from_s) {
+            return;
+        }
+        let window = self.recent.iter().filter(|b| b.time_s >= from_s);
+        let (mut low, mut high, mut sum, mut n) = (f64::INFINITY, f64::NEG_INFINITY, 0.0, 0);
+        for b in window {
+            (low, high) = (low.min(b.value), high.max(b.value));
+            (sum, n) = (sum + b.value, n + 1);
+        }
+        let mean_m_s = sum / f64::from(n.max(1));
+        if high - low <= RANGE_SHARE * mean_m_s.abs() + FLOOR_M_S + 6.0 * self.ripple_m_s() {
+            if self.steady.len() == N_STEADY {
+                self.steady.pop_front();
+            }
+            // The very first stretch is taken to reach back to the start of the record.
+            let start_s = if self.steady.is_empty() && self.is_first_window() {
+                f64::NEG_INFINITY
+            } else {
+                from_s
+            };
+            self.steady.push_back(Steady { start_s, end_s: None });
+            (self.level_m_s, self.n_outside) = (mean_m_s, 0);
+        }
+    }
+
+    fn is_first_window(&self) -> bool {
+        self.recent
+            .iter()
+            .zip(self.track.bins(f64::NEG_INFINITY, f64::INFINITY))
+            .all(|(a, b)| *a == b)
+    }
+
+    fn stay_steady(&mut self, bin: Bin) {
+        let level_m_s = self.level_m_s;
+        let deviation = |b: &Bin| (b.value - level_m_s).abs();
+        let left = (LEFT_SHARE * level_m_s.abs()).max(2.0 * FLOOR_M_S) + 5.0 * self.ripple_m_s();
+        if deviation(&bin) <= left {
+            self.level_m_s += LEVEL_SHARE * (bin.value - level_m_s);
+            self.n_outside = 0;
+            return;
+        }
+        self.n_outside += 1;
+        if self.n_outside < 3 {
+            return;
+        }
+        let kept = KEPT_SHARE * level_m_s.abs() + 0.5 * FLOOR_M_S + 2.5 * self.ripple_m_s();
+        let last = self.recent.iter().rev().find(|b| deviation(b) <= kept);
+        let end_s = last.or(self.recent.front()).map_or(bin.time_s, |b| b.time_s);
+        if let Some(steady) = self.steady.back_mut() {
+            steady.end_s = Some(end_s.max(steady.start_s));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rest for 3 s, 1 m/s from 5 s, braking at 20 s, rest from 22 s.
+    fn pass() -> CarriagePass {
+        let mut carriage = CarriagePass::default();
+        for k in 0..1250 {
+            let t = f64::from(k) * 0.02;
+            carriage.push(t, (0.5 * (t - 3.0)).min(0.5 * (22.0 - t)).clamp(0.0, 1.0));
+        }
+        carriage
+    }
+
+    #[test]
+    fn a_pass_is_steady_between_speeding_up_and_braking() {
+        let carriage = pass();
+        assert_eq!(carriage.passage(0.5, 2.5), Passage::Steady);
+        assert_eq!(carriage.passage(3.5, 4.0), Passage::Changing);
+        assert_eq!(carriage.passage(5.1, 19.8), Passage::Steady);
+        let Passage::Ends(end_s) = carriage.passage(6.0, 21.0) else { panic!("braking is missed") };
+        assert!((end_s - 20.0).abs() < 0.1, "{end_s} s");
+        assert_eq!(carriage.passage(22.3, 24.0), Passage::Steady);
+    }
+
+    #[test]
+    fn a_model_without_speed_channel_is_always_steady() {
+        assert_eq!(CarriagePass::default().passage(0.0, 1e3), Passage::Steady);
+    }
+}

@@ -1,0 +1,180 @@
+//! Finds runs in the stream of samples.
+
+use std::collections::VecDeque;
+
+use devices::{Quantity, Sample};
+
+use super::Event;
+use super::Limits;
+use super::RunEnd;
+use super::carriage_pass::KNOWN_AFTER_S;
+use super::half_cycles::HalfCycles;
+use super::half_cycles::QUIET_S;
+use super::half_cycles::Swing;
+use super::motion::Motion;
+use super::passed_over::PassedOver;
+use super::records::KEPT_S;
+use super::records::Records;
+
+/// Samples kept per channel: beyond it a run is closed, so that memory stays within some 100 MB.
+const N_SAMPLES_MAX: usize = 2_000_000;
+/// Longest time [s] that the roll waits for a speed channel that lags behind or has stopped.
+const SPEED_WAIT_S: f64 = 4.0;
+/// Share of a half period up to which a hole in the roll does not end a run.
+const HOLE_SHARE: f64 = 0.25;
+
+/// Finds runs in samples pushed one by one; the same samples give the same events, however cut.
+#[derive(Debug)]
+pub struct RunFinder {
+    limits: Limits,
+    records: Records,
+    half_cycles: HalfCycles,
+    motion: Motion,
+    passed_over: PassedOver,
+    /// What the roll did while it is not yet known how the carriage moved.
+    waiting: VecDeque<Swing>,
+    quiet_since_s: Option<f64>,
+    half_period_s: Option<f64>,
+    n_since_forgotten: usize,
+}
+
+impl RunFinder {
+    /// A finder at the start of a recording.
+    pub fn new(limits: Limits) -> Self {
+        Self {
+            limits,
+            records: Records::default(),
+            half_cycles: HalfCycles::default(),
+            motion: Motion::default(),
+            passed_over: PassedOver::default(),
+            waiting: VecDeque::new(),
+            quiet_since_s: None,
+            half_period_s: None,
+            n_since_forgotten: 0,
+        }
+    }
+
+    /// Takes the next sample and appends what is known because of it.
+    pub fn push(&mut self, sample: &Sample, events: &mut Vec<Event>) {
+        let last_s = match sample.quantity {
+            Quantity::Roll => self.records.roll.last_s(),
+            Quantity::Force | Quantity::Moment => self.records.drive.track.last_s(),
+            Quantity::Speed => self.records.carriage.track.last_s(),
+        };
+        if !self.passed_over.admits(sample, last_s, events) {
+            return;
+        }
+        match sample.quantity {
+            Quantity::Roll => self.push_roll(sample.time_s, sample.value, events),
+            Quantity::Force | Quantity::Moment => {
+                self.records.drive.push(sample.time_s, sample.value);
+            }
+            Quantity::Speed => self.records.carriage.push(sample.time_s, sample.value),
+        }
+        self.settle(events);
+        self.n_since_forgotten += 1;
+        if self.n_since_forgotten >= 1000 {
+            self.forget(events);
+        }
+    }
+
+    /// The recording has ended: closes whatever was under way.
+    pub fn finish(&mut self, events: &mut Vec<Event>) {
+        self.drain(events);
+        if let Some(end_s) = self.records.roll.last_s() {
+            self.motion.end(RunEnd::RecordingEnded, end_s, &self.records, &self.limits, events);
+        }
+        self.passed_over.flush(events);
+    }
+
+    fn push_roll(&mut self, time_s: f64, roll_rad: f64, events: &mut Vec<Event>) {
+        if let Some(last_s) = self.records.roll.hole_before(time_s) {
+            let bearable_s = self.half_period_s.map_or(0.0, |half_s| HOLE_SHARE * half_s);
+            if time_s - last_s > bearable_s {
+                self.drain(events);
+                let (records, limits) = (&self.records, &self.limits);
+                self.motion.end(RunEnd::Gap, last_s, records, limits, events);
+                self.records.interrupt_roll();
+                self.half_cycles = HalfCycles::default();
+                (self.quiet_since_s, self.half_period_s) = (None, None);
+            }
+        }
+        let Some(bin) = self.records.push_roll(time_s, roll_rad) else { return };
+        let was_quiet = self.half_cycles.is_quiet();
+        let swing = self.half_cycles.push(bin, self.records.ripple());
+        match swing {
+            Some(Swing::Quiet(at_s)) => {
+                self.half_period_s = None;
+                self.quiet_since_s = Some(at_s - QUIET_S);
+            }
+            Some(Swing::Half(half)) => self.half_period_s = Some(half.duration_s()),
+            None => {}
+        }
+        self.waiting.extend(swing);
+        if self.half_cycles.is_quiet() {
+            self.quiet_since_s.get_or_insert(bin.time_s);
+        } else if was_quiet && let Some(start_s) = self.quiet_since_s.take() {
+            let left_s = self.half_cycles.turn().map_or(bin.time_s, |turn| turn.left_s);
+            if left_s - start_s >= 1.0 {
+                self.records.note_still(start_s, left_s);
+            }
+        }
+    }
+
+    /// Passes on what the roll did as soon as it is known how the carriage moved then.
+    fn settle(&mut self, events: &mut Vec<Event>) {
+        while let Some(swing) = self.waiting.front() {
+            let at_s = match swing {
+                Swing::Half(half) => half.end.time_s,
+                Swing::Quiet(at_s) => *at_s,
+            };
+            let known = match self.records.carriage.track.last_s() {
+                None => true,
+                Some(speed_s) => {
+                    let roll_s = self.records.roll.last_s().unwrap_or(at_s);
+                    speed_s >= at_s + KNOWN_AFTER_S || roll_s >= at_s + SPEED_WAIT_S
+                }
+            };
+            if !known {
+                return;
+            }
+            self.pass_on(events);
+        }
+    }
+
+    fn drain(&mut self, events: &mut Vec<Event>) {
+        while !self.waiting.is_empty() {
+            self.pass_on(events);
+        }
+    }
+
+    fn pass_on(&mut self, events: &mut Vec<Event>) {
+        let (records, limits) = (&self.records, &self.limits);
+        match self.waiting.pop_front() {
+            Some(Swing::Half(half)) => self.motion.half_cycle(half, records, limits, events),
+            Some(Swing::Quiet(at_s)) => self.motion.quiet(at_s, records, limits, events),
+            None => {}
+        }
+    }
+
+    /// Drops samples that no run can need any more.
+    fn forget(&mut self, events: &mut Vec<Event>) {
+        self.n_since_forgotten = 0;
+        let Some(now_s) = self.records.roll.last_s().or(self.records.drive.track.last_s()) else {
+            return;
+        };
+        if self.records.n_samples() > N_SAMPLES_MAX {
+            self.drain(events);
+            let (records, limits) = (&self.records, &self.limits);
+            self.motion.end(RunEnd::TooLong, now_s, records, limits, events);
+        }
+        let waiting_s = self.waiting.iter().find_map(|swing| match swing {
+            Swing::Half(half) => Some(half.start.time_s),
+            Swing::Quiet(_) => None,
+        });
+        let turn_s = self.half_cycles.turn().map(|turn| turn.time_s);
+        let needed = [self.motion.needed_from_s(), waiting_s, turn_s];
+        let from_s = needed.into_iter().flatten().fold(now_s - KEPT_S, f64::min);
+        self.records.forget_before(from_s);
+    }
+}

@@ -1,0 +1,329 @@
+//! Joins half cycles into decays and forced runs.
+
+use super::Event;
+use super::Limits;
+use super::RunEnd;
+use super::RunKind;
+use super::assembly::Stretch;
+use super::carriage_pass::Passage;
+use super::decay;
+use super::decay::Verdict;
+use super::forced;
+use super::forced::Cycle;
+use super::half_cycles::HalfCycle;
+use super::records::Records;
+use super::unused::Cause;
+use super::unused::Unused;
+
+/// Half cycles remembered while no run is under way.
+const N_REMEMBERED: usize = 48;
+/// Longest run [s]; a longer one is closed and another begins.
+const RUN_MAX_S: f64 = 1800.0;
+/// Growth of the amplitude that is a blow or a hand, so that what follows is a new start [-].
+const NEW_START: f64 = 1.3;
+/// A stop shows in the roll only some time after it began: so much of a period is dropped before
+/// the roll leaves its decay.
+const DROPPED_BEFORE_DEPARTURE: f64 = 1.0 / 6.0;
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum State {
+    #[default]
+    Searching,
+    Decay,
+    Forced,
+}
+
+/// The state machine over half cycles.
+#[derive(Debug, Default)]
+pub(super) struct Motion {
+    state: State,
+    /// Half cycles of the run under way, or the last ones.
+    cycles: Vec<Cycle>,
+    /// Half cycles after a forced run that may be a single outlier.
+    doubtful: Vec<Cycle>,
+    unused: Option<Unused>,
+    distrust: Option<&'static str>,
+    /// The rod drove the model, and still may.
+    rod_on: bool,
+}
+
+impl Motion {
+    /// Time [s] from which samples are still needed.
+    pub(super) fn needed_from_s(&self) -> Option<f64> {
+        self.cycles.first().map(|c| c.half.start.time_s)
+    }
+
+    /// Takes the next half cycle.
+    pub(super) fn half_cycle(
+        &mut self,
+        half: HalfCycle,
+        records: &Records,
+        limits: &Limits,
+        events: &mut Vec<Event>,
+    ) {
+        let (start_s, end_s) = (half.start.left_s, half.end.time_s);
+        let passage = records.carriage.passage(start_s, end_s);
+        let drive = records.drive.swing(end_s, half.duration_s());
+        let cycle = Cycle { half, drive, steady: passage == Passage::Steady };
+        let mut closer = Closer { records, limits, events };
+        match (self.state, passage) {
+            (State::Decay | State::Forced, Passage::Ends(left_s)) => {
+                self.close(RunEnd::PassEnded, left_s, &mut closer);
+                self.search(cycle, &mut closer);
+            }
+            (State::Decay | State::Forced, Passage::Changing) => {
+                self.close(RunEnd::PassEnded, start_s, &mut closer);
+                self.search(cycle, &mut closer);
+            }
+            (State::Decay, Passage::Steady) => self.decay(cycle, &mut closer),
+            (State::Forced, Passage::Steady) => self.forced(cycle, &mut closer),
+            (State::Searching, _) => self.search(cycle, &mut closer),
+        }
+        let long = |c: &Cycle| end_s - c.half.start.time_s > RUN_MAX_S;
+        if self.state != State::Searching && self.cycles.first().is_some_and(long) {
+            self.end(RunEnd::TooLong, end_s, records, limits, events);
+        }
+    }
+
+    /// The model is still, the record has a hole, or it ended: whatever was under way ends.
+    pub(super) fn end(
+        &mut self,
+        end: RunEnd,
+        end_s: f64,
+        records: &Records,
+        limits: &Limits,
+        events: &mut Vec<Event>,
+    ) {
+        let mut closer = Closer { records, limits, events };
+        if self.state != State::Searching {
+            // The pass may have ended after the last whole half cycle.
+            let last_s = self.cycles.last().map_or(end_s, |c| c.half.end.time_s);
+            match records.carriage.passage(last_s, end_s) {
+                Passage::Ends(left_s) => self.close(RunEnd::PassEnded, left_s, &mut closer),
+                _ => self.close(end, end_s, &mut closer),
+            }
+        }
+        self.flush(f64::INFINITY, &mut closer);
+        *self = Self::default();
+        if end == RunEnd::Gap {
+            self.distrust = Some("the roll goes on behind a hole in the record, without a release");
+        }
+    }
+
+    /// The model is still, or held, at `at_s`.
+    pub(super) fn quiet(
+        &mut self,
+        at_s: f64,
+        records: &Records,
+        limits: &Limits,
+        events: &mut Vec<Event>,
+    ) {
+        let halves: Vec<HalfCycle> = self.cycles.iter().map(|c| c.half).collect();
+        let due_rad = if halves.is_empty() { 0.0 } else { decay::due_rad(&halves) };
+        let end = match self.state {
+            State::Forced => RunEnd::ExcitationChanged,
+            _ if due_rad > 1.5 * records.ripple().lost_below_rad => RunEnd::Caught,
+            _ => RunEnd::LostInNoise,
+        };
+        self.end(end, at_s, records, limits, events);
+    }
+
+    fn search(&mut self, cycle: Cycle, closer: &mut Closer) {
+        self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle)).extend(&cycle);
+        if let Some(before) = self.cycles.last() {
+            let growth = cycle.half.amplitude_rad() / before.half.amplitude_rad();
+            if growth > 1.06 && !(before.steady && cycle.steady) {
+                self.distrust =
+                    Some("the roll was still disturbed by the carriage's change of speed");
+            } else if growth > NEW_START {
+                self.distrust = None;
+            }
+        }
+        if !cycle.is_driven() {
+            self.rod_on = false;
+        }
+        self.cycles.push(cycle);
+        if self.cycles.len() > N_REMEMBERED {
+            self.cycles.remove(0);
+        }
+        let ripple = closer.records.ripple();
+        let recorded = closer.records.drive.is_recorded();
+        if let Some(start) = forced::settled(&self.cycles, recorded, ripple) {
+            self.begin(State::Forced, start, closer);
+        } else if let Some(start) = self.decay_start(closer) {
+            self.begin(State::Decay, start, closer);
+        }
+    }
+
+    fn begin(&mut self, state: State, start: usize, closer: &mut Closer) {
+        self.state = state;
+        self.cycles.drain(..start);
+        let start_s = self.cycles[0].half.start.time_s;
+        self.flush(start_s, closer);
+    }
+
+    /// Index of the first of the last half cycles that fall one after the other without a drive.
+    fn decay_start(&self, closer: &Closer) -> Option<usize> {
+        let ripple = closer.records.ripple();
+        let begins = |k: &usize| {
+            let (a, b) = (&self.cycles[k - 1], &self.cycles[*k]);
+            a.steady && b.steady && decay::begins(&a.half, &b.half, ripple)
+        };
+        let n = self.cycles.len();
+        let start = (1..n).rev().take_while(begins).last()? - 1;
+        let chain = &self.cycles[start..];
+        let driven = chain.last().is_some_and(Cycle::is_driven);
+        (!driven || (!self.rod_on && forced::drive_follows_decay(chain))).then_some(start)
+    }
+
+    fn decay(&mut self, cycle: Cycle, closer: &mut Closer) {
+        let ripple = closer.records.ripple();
+        let halves: Vec<HalfCycle> = self.cycles.iter().map(|c| c.half).collect();
+        let driven = |c: &Cycle| c.is_driven();
+        let grabbed = driven(&cycle)
+            && self.cycles.last().is_some_and(driven)
+            && !forced::drive_follows_decay(&self.cycles);
+        let verdict = decay::judge(&halves, &cycle.half, ripple);
+        match verdict {
+            _ if grabbed => {
+                let end_s = self.cycles.last().map_or(0.0, |c| c.half.start.time_s);
+                self.close(RunEnd::ExcitationChanged, end_s, closer);
+                self.search(cycle, closer);
+            }
+            Verdict::Continues => self.cycles.push(cycle),
+            Verdict::DropsFirst => {
+                self.cycles.remove(0);
+                self.cycles.push(cycle);
+            }
+            Verdict::Ends(end) => {
+                self.close(end, cycle.half.end.time_s, closer);
+                self.search(cycle, closer);
+            }
+        }
+        if !closer.records.drive.is_recorded() {
+            self.notice_steady_roll(closer);
+        }
+    }
+
+    /// Without a drive channel a sustained roll is known only by its amplitude.
+    fn notice_steady_roll(&mut self, closer: &mut Closer) {
+        let ripple = closer.records.ripple();
+        if self.state == State::Decay
+            && let Some(start) = forced::settled(&self.cycles, false, ripple)
+        {
+            let first = self.cycles[0];
+            self.unused.get_or_insert_with(|| Unused::from_cycle(&first));
+            for cycle in &self.cycles[..start] {
+                self.unused.iter_mut().for_each(|unused| unused.extend(cycle));
+            }
+            self.begin(State::Forced, start, closer);
+        }
+    }
+
+    fn forced(&mut self, cycle: Cycle, closer: &mut Closer) {
+        let ripple = closer.records.ripple();
+        if forced::continues(&self.cycles, &cycle, ripple) {
+            self.cycles.append(&mut self.doubtful);
+            self.cycles.push(cycle);
+            return;
+        }
+        self.doubtful.push(cycle);
+        if self.doubtful.len() < 2 {
+            return;
+        }
+        let doubtful = std::mem::take(&mut self.doubtful);
+        self.close(RunEnd::ExcitationChanged, cycle.half.end.time_s, closer);
+        for cycle in doubtful {
+            self.search(cycle, closer);
+        }
+    }
+
+    /// Ends the run under way for the reason `end` at `end_s` at the latest.
+    fn close(&mut self, end: RunEnd, end_s: f64, closer: &mut Closer) {
+        let kind = if self.state == State::Forced { RunKind::Forced } else { RunKind::Decay };
+        let cycles = std::mem::take(&mut self.cycles);
+        let Some(first) = cycles.first() else { return };
+        let start_s = match kind {
+            RunKind::Decay => first.half.start.left_s,
+            RunKind::Forced => first.half.start.time_s,
+        };
+        let (end, end_s, why) = closer.usable_end(kind, &cycles, end, end_s);
+        let stretch =
+            Stretch { kind, start_s, end_s, end, cycles: &cycles, distrust: self.distrust };
+        let event = stretch.close(closer.records, closer.limits);
+        closer.events.push(event);
+        self.rod_on = kind == RunKind::Forced;
+        self.state = State::Searching;
+        self.unused = Some(Unused::new(end_s, Cause::After(end, why)));
+        for cycle in cycles.iter().chain(&self.doubtful).filter(|c| c.half.end.time_s > end_s) {
+            self.unused.iter_mut().for_each(|unused| unused.extend(cycle));
+        }
+        self.doubtful.clear();
+    }
+
+    fn flush(&mut self, end_s: f64, closer: &mut Closer) {
+        closer
+            .events
+            .extend(self.unused.take().and_then(|unused| unused.close(end_s)).map(Event::Rejected));
+    }
+}
+
+/// What closing a run takes.
+struct Closer<'a> {
+    records: &'a Records,
+    limits: &'a Limits,
+    events: &'a mut Vec<Event>,
+}
+
+impl Closer<'_> {
+    /// Why and when the stretch of `cycles` really ends, at `end_s` at the latest, and a sentence
+    /// about it.
+    fn usable_end(
+        &self,
+        kind: RunKind,
+        cycles: &[Cycle],
+        end: RunEnd,
+        end_s: f64,
+    ) -> (RunEnd, f64, String) {
+        let records = self.records;
+        let ripple = records.ripple();
+        let halves: Vec<HalfCycle> = cycles.iter().map(|c| c.half).collect();
+        let last_s = halves.last().map_or(end_s, |h| h.end.time_s);
+        let half_s = decay::half_period_s(&halves);
+        let known_end = matches!(
+            end,
+            RunEnd::Gap | RunEnd::PassEnded | RunEnd::RecordingEnded | RunEnd::TooLong
+        );
+        if end == RunEnd::LostInNoise {
+            return (end, last_s.min(end_s), format!("{} at {last_s:.1} s", end.clause()));
+        }
+        let departure_s = match kind {
+            RunKind::Decay => decay::departure_s(&halves, &records.roll, ripple, end_s),
+            RunKind::Forced => {
+                let roll = forced::departure_s(cycles, &records.roll, ripple.sd_rad, end_s);
+                let drive =
+                    forced::departure_s(cycles, &records.drive.track, records.drive.sd(), end_s);
+                [roll, drive].into_iter().flatten().reduce(f64::min)
+            }
+        };
+        let Some(left_s) = departure_s else {
+            let until_s = if known_end { end_s } else { last_s.min(end_s) };
+            return (end, until_s, format!("{} at {until_s:.1} s", end.clause()));
+        };
+        let latest_s = left_s - 2.0 * DROPPED_BEFORE_DEPARTURE * half_s;
+        let turns = halves.iter().rev().map(|h| h.end.time_s);
+        let until_s = turns.chain(halves.first().map(|h| h.start.left_s));
+        let until_s = until_s.into_iter().find(|&t| t <= latest_s).unwrap_or(latest_s);
+        let end = match (end, kind) {
+            (RunEnd::Gap | RunEnd::PassEnded | RunEnd::RecordingEnded, RunKind::Decay) => {
+                RunEnd::Caught
+            }
+            (RunEnd::Gap | RunEnd::PassEnded | RunEnd::RecordingEnded, RunKind::Forced) => {
+                RunEnd::ExcitationChanged
+            }
+            (other, _) => other,
+        };
+        let clause = end.clause();
+        (end, until_s, format!("{clause}: the roll left its course at {left_s:.1} s"))
+    }
+}

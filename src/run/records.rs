@@ -1,0 +1,99 @@
+//! Keeps what the channels showed lately, and where the model was still.
+
+use std::collections::VecDeque;
+
+use super::Still;
+use super::bins::Bin;
+use super::carriage_pass::CarriagePass;
+use super::drive::Drive;
+use super::half_cycles::Ripple;
+use super::noise::Noise;
+use super::noise::Quantum;
+use super::track::Track;
+
+/// Longest still stretch that is averaged [s]; also how long every sample is kept.
+pub(super) const KEPT_S: f64 = 20.0;
+/// Still stretches remembered: the rest, and the heel at which the model was held after it.
+const N_STILL: usize = 4;
+/// Standard deviation of three bins weighted 1/4, 1/2, 1/4.
+const SMOOTHED: f64 = 0.612;
+
+/// The channels of one recording.
+#[derive(Debug, Default)]
+pub(super) struct Records {
+    /// Samples of the roll [rad].
+    pub(super) roll: Track,
+    /// Samples of the drive.
+    pub(super) drive: Drive,
+    /// The carriage.
+    pub(super) carriage: CarriagePass,
+    sample_noise: Noise,
+    bin_noise: Noise,
+    quantum: Quantum,
+    still: VecDeque<Still>,
+}
+
+impl Records {
+    /// Takes a roll sample; gives the bin that it completes.
+    pub(super) fn push_roll(&mut self, time_s: f64, roll_rad: f64) -> Option<Bin> {
+        self.sample_noise.push(roll_rad);
+        self.quantum.push(roll_rad);
+        let bin = self.roll.push(time_s, roll_rad)?;
+        self.bin_noise.push(bin.value);
+        Some(bin)
+    }
+
+    /// The next roll sample does not follow the last one.
+    pub(super) fn interrupt_roll(&mut self) {
+        self.roll.interrupt();
+        self.sample_noise.interrupt();
+        self.bin_noise.interrupt();
+    }
+
+    /// What noise and quantum do to the roll.
+    pub(super) fn ripple(&self) -> Ripple {
+        let quantum_rad = self.quantum.step();
+        let step_sd_rad = quantum_rad / 12.0_f64.sqrt();
+        Ripple {
+            sd_rad: SMOOTHED * self.bin_noise.sd(),
+            quantum_rad,
+            lost_below_rad: 3.0 * self.sample_noise.sd().max(step_sd_rad),
+        }
+    }
+
+    /// Remembers that the model was still from `start_s` to `end_s`.
+    pub(super) fn note_still(&mut self, start_s: f64, end_s: f64) {
+        let start_s = start_s.max(end_s - KEPT_S);
+        let Some(roll_rad) = self.roll.mean(start_s, end_s) else { return };
+        let force = self.drive.track.mean(start_s, end_s);
+        if self.still.len() == N_STILL {
+            self.still.pop_front();
+        }
+        self.still.push_back(Still { start_s, end_s, roll_rad, force });
+    }
+
+    /// The last still stretch before `start_s` in which the roll was within `reach_rad` of
+    /// `mean_rad`, the mean of the run: a model held at heel is still too, but not at its zero.
+    pub(super) fn still_before(
+        &self,
+        start_s: f64,
+        mean_rad: f64,
+        reach_rad: f64,
+    ) -> Option<Still> {
+        let fits = |s: &&Still| s.end_s <= start_s && (s.roll_rad - mean_rad).abs() <= reach_rad;
+        self.still.iter().rev().find(fits).copied()
+    }
+
+    /// Drops samples older than `time_s` on every channel.
+    pub(super) fn forget_before(&mut self, time_s: f64) {
+        self.roll.forget_before(time_s);
+        self.drive.track.forget_before(time_s);
+        self.carriage.track.forget_before(time_s);
+    }
+
+    /// Number of samples kept on the channel that has most.
+    pub(super) fn n_samples(&self) -> usize {
+        let drive = self.drive.track.n_samples();
+        self.roll.n_samples().max(drive).max(self.carriage.track.n_samples())
+    }
+}
