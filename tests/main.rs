@@ -7,3 +7,4 @@ mod sampler_draws_the_exact_posterior;
 mod sampler_says_what_it_did;
 mod the_simulated_tank_keeps_its_script;
 mod the_simulated_tank_writes_campaigns;
+mod run_finding_kvlcc2;

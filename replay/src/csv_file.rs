@@ -23,7 +23,7 @@ pub(crate) struct CsvFile {
     path: PathBuf,
     reader: Reader<Bounded>,
     record: ByteRecord,
-    /// The first row after the header was read to see whether it holds units.
+    /// The first row was read when the file was opened, to see whether it holds units.
     held: bool,
     header: Vec<String>,
     delimiter: u8,
@@ -57,11 +57,8 @@ impl CsvFile {
             bytes_total,
         };
         csv.read_record()?;
-        if !csv.read_record()? {
-            return Err(ReplayError::HeaderOnly { path: path.to_owned() });
-        }
-        csv.held = !csv.is_text_only();
-        Ok(csv)
+        csv.held = csv.read_record()? && (!csv.is_text_only() || csv.read_record()?);
+        if csv.held { Ok(csv) } else { Err(ReplayError::HeaderOnly { path: path.to_owned() }) }
     }
 
     /// The header's columns as spelled in the file.

@@ -206,6 +206,12 @@ pub enum ReplayError {
         /// What the MCAP reader saw.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
+    /// An MCAP file without a single message.
+    #[error("\"{}\" holds no message", path.display())]
+    NoMessages {
+        /// The file.
+        path: PathBuf,
+    },
     /// A channel without topic in a foreign MCAP file.
     #[error("no topic is given for {} in \"{}\"; its topics are {}",
         quantity.name(), path.display(), listed(present))]

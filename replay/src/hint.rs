@@ -13,7 +13,9 @@ impl ReplayError {
             Self::Open { source, .. } if source.kind() == io::ErrorKind::NotFound => {
                 Some("check the path; it is relative to the campaign folder".to_owned())
             }
-            Self::Empty { .. } => Some("the recording was never written; take it out".to_owned()),
+            Self::Empty { .. } | Self::NoMessages { .. } => {
+                Some("nothing was recorded, or it was lost at once; take the file out".to_owned())
+            }
             Self::Utf16 { .. } => Some("save the table as UTF-8".to_owned()),
             Self::MissingChannel { quantity, .. } => {
                 Some(format!("add {} to [columns] of the campaign file", quantity.name()))

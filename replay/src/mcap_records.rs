@@ -13,6 +13,9 @@ use crate::error::ReplayError;
 
 /// Longest record read [bytes]; more is no roll test but a broken length.
 const RECORD_BYTES_MAX: u64 = 1 << 26;
+/// Largest chunk held in memory to check it before its records are given [bytes]. The records of a
+/// larger chunk, and of one that is torn, are given as they come.
+const CHECKED_FIRST_BYTES_MAX: u64 = 1 << 24;
 /// Opcode and length before every record [bytes].
 const PREFIX_BYTES: u64 = 9;
 /// Bytes of a chunk's header up to the name of its compression.
@@ -32,6 +35,8 @@ pub(crate) struct Records {
     /// The compressed chunk being unpacked.
     chunk: Option<Chunk>,
     unpacker: LinearReader,
+    /// Whether the unpacker checks a chunk's checksum before it gives any of its records.
+    checks_first: bool,
     body: Vec<u8>,
     torn_at: Option<u64>,
 }
@@ -40,6 +45,8 @@ struct Chunk {
     start: u64,
     /// Bytes of the chunk record not yet given to the unpacker.
     remaining: u64,
+    /// Whether its writer never came to write its lengths.
+    open: bool,
     /// Prefix and header, given to the unpacker before the rest.
     header: Vec<u8>,
 }
@@ -59,11 +66,6 @@ impl Records {
         if magic != MAGIC {
             return Err(ReplayError::NotMcap { path: path.to_owned() });
         }
-        let options = LinearReaderOptions::default()
-            .with_skip_start_magic(true)
-            .with_skip_end_magic(true)
-            .with_validate_chunk_crcs(true)
-            .with_record_length_limit(RECORD_BYTES_MAX as usize);
         Ok(Self {
             path: path.to_owned(),
             file,
@@ -71,7 +73,8 @@ impl Records {
             offset: MAGIC.len() as u64,
             record_start: MAGIC.len() as u64,
             chunk: None,
-            unpacker: LinearReader::new_with_options(options),
+            unpacker: unpacker(true),
+            checks_first: true,
             body: Vec::new(),
             torn_at: None,
         })
@@ -181,11 +184,17 @@ impl Records {
         let mut remaining = length.checked_sub(header_bytes).ok_or_else(|| {
             self.damaged(McapError::BadChunkLength { header: header_bytes, available: length })
         })?;
-        if length == u64::MAX {
+        let unpacked_bytes = u64::from_le_bytes(eight(&header, prefix.len() + 16));
+        let checks_first = self.has(remaining) && unpacked_bytes <= CHECKED_FIRST_BYTES_MAX;
+        if checks_first != self.checks_first {
+            (self.unpacker, self.checks_first) = (unpacker(checks_first), checks_first);
+        }
+        let open = length == u64::MAX;
+        if open {
             remaining = self.length - self.offset;
             close(&mut header, remaining);
         }
-        self.chunk = Some(Chunk { start, remaining, header });
+        self.chunk = Some(Chunk { start, remaining, open, header });
         Ok(())
     }
 
@@ -199,10 +208,17 @@ impl Records {
                     return Ok(Some(opcode));
                 }
                 Some(Ok(LinearReadEvent::ReadRequest(wanted))) => wanted,
+                // The data of an open chunk just stops.
+                Some(Err(_)) if chunk.open && chunk.remaining == 0 => {
+                    self.torn_at = Some(chunk.start);
+                    0
+                }
                 Some(Err(error)) => return Err(self.damaged(error)),
                 None => 0,
             };
-            let read = if chunk.header.is_empty() {
+            let read = if wanted == 0 {
+                0
+            } else if chunk.header.is_empty() {
                 let wanted = chunk.remaining.min(wanted as u64) as usize;
                 let read = self.file.read(self.unpacker.insert(wanted));
                 let read =
@@ -261,6 +277,20 @@ impl Records {
     fn read_error(&self, source: io::Error) -> ReplayError {
         ReplayError::Read { path: self.path.clone(), source }
     }
+}
+
+/// An unpacker of chunks that checks their checksum before or while it gives their records.
+fn unpacker(checks_first: bool) -> LinearReader {
+    let options = LinearReaderOptions::default()
+        .with_skip_start_magic(true)
+        .with_skip_end_magic(true)
+        .with_validate_chunk_crcs(true)
+        .with_record_length_limit(RECORD_BYTES_MAX as usize);
+    LinearReader::new_with_options(if checks_first {
+        options.with_prevalidate_chunk_crcs(true)
+    } else {
+        options
+    })
 }
 
 /// Gives the header of a chunk that its writer never closed the sizes of what is in the file.

@@ -48,6 +48,8 @@ pub(crate) struct McapStream {
     stamps: Stamps<f64>,
     messages: u64,
     ended: bool,
+    /// Why reading stopped, told after what was read before it.
+    failure: Option<ReplayError>,
     latest_s: f64,
     disordered: Tally,
     repeated: Tally,
@@ -93,6 +95,7 @@ impl McapStream {
             stamps: Stamps::new(),
             messages: 0,
             ended: false,
+            failure: None,
             latest_s: f64::NEG_INFINITY,
             disordered: Tally::default(),
             repeated: Tally::default(),
@@ -203,11 +206,13 @@ impl Stream for McapStream {
                 return Ok(Some(Sample { quantity, time_s, value }));
             }
             while !self.ended && self.window.len() < REORDERED_MESSAGES {
-                self.read_message()?;
+                if let Err(error) = self.read_message() {
+                    (self.ended, self.failure) = (true, Some(error));
+                }
             }
             let Some(waiting) = self.window.pop() else {
                 self.stamps.finish();
-                return Ok(None);
+                return self.failure.take().map_or(Ok(None), Err);
             };
             self.release(&waiting)?;
         }

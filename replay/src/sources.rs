@@ -44,6 +44,9 @@ pub(crate) fn open_streams(
     let mut sources = Sources { streams: Vec::new(), quantities: Vec::new(), zero_log_time_ns };
     for ((only, path), inventory) in files.iter().zip(&inventories) {
         match inventory {
+            Some(inventory) if inventory.encodings.is_empty() => {
+                return Err(ReplayError::NoMessages { path: path.clone() });
+            }
             Some(inventory) if inventory.ours => sources.open_ours(path, *only, inventory)?,
             Some(inventory) => sources.open_foreign(path, *only, columns, inventory)?,
             None => sources.open_csv(path, *only, columns)?,

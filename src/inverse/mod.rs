@@ -4,9 +4,11 @@ pub mod decay_fit;
 pub mod estimate;
 pub mod filter;
 pub mod forced;
+pub mod froude_law;
 pub mod half_cycles;
 pub mod harmonic;
 pub mod identification;
+pub mod law_misfit;
 pub mod matrix;
 pub mod mixture;
 pub mod moment_history;
@@ -15,3 +17,39 @@ pub mod paper;
 pub mod record;
 pub mod smoother;
 pub mod transition;
+
+mod drive;
+mod identify_decay;
+mod identify_forced;
+mod paper_method;
+
+use identification::{Identification, Method};
+
+use crate::roll::exciting_moment::Exciter;
+use crate::run::{Run, RunKind};
+
+pub use froude_law::froude_law;
+
+/// What an identification needs to know beside the run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setting {
+    /// Restoring coefficient `K = rho g V GM` [N m/rad].
+    pub restoring_n_m_per_rad: f64,
+    /// How rod force becomes moment; none when the moment itself was recorded.
+    pub exciter: Option<Exciter>,
+    /// How the moment history is inferred.
+    pub method: Method,
+    /// Seed of the chains of [`Method::PaperMcmc`].
+    pub seed: u64,
+}
+
+/// Identifies one run.
+///
+/// # Errors
+/// The reason, as a sentence with its values, why the run cannot be identified.
+pub fn identify(run: &Run, setting: &Setting) -> Result<Identification, String> {
+    match run.kind {
+        RunKind::Decay => identify_decay::identify(run, setting),
+        RunKind::Forced => identify_forced::identify(run, setting),
+    }
+}

@@ -6,6 +6,7 @@
 use statrs::function::gamma::ln_gamma;
 
 use super::filter::{Column, Filtered, filter};
+use super::paper::{Hyperpriors, PriorPower};
 use super::smoother::smooth;
 use super::transition::Transition;
 
@@ -19,17 +20,10 @@ pub enum Hyperprior {
     },
     /// The paper's gamma and inverse-gamma pair (2.13).
     Conjugate {
-        /// Shape and rate pair of the smoothness.
-        alpha_1: f64,
-        /// See `alpha_1`.
-        beta_1: f64,
-        /// Shape and scale pair of the noise.
-        alpha_2: f64,
-        /// See `alpha_2`.
-        beta_2: f64,
-        /// Power of the smoothness in (2.10), in excess of half the rank of `W`: one half as
-        /// printed, zero when mended.
-        excess_power: f64,
+        /// The four parameters.
+        hyper: Hyperpriors,
+        /// The power of the smoothness in (2.10).
+        power: PriorPower,
         /// Natural frequency [rad/s], which turns scaled time back into the paper's units.
         natural_frequency_rad_s: f64,
     },
@@ -180,18 +174,14 @@ impl<F> MomentProblem<'_, F> {
                 let flat_prior = -(n_flat as f64) * roll_scale_rad.ln();
                 (common + flat_prior + ln_gamma(shape) - shape * scale.ln(), shape, scale)
             }
-            Hyperprior::Conjugate {
-                alpha_1,
-                beta_1,
-                alpha_2,
-                beta_2,
-                excess_power,
-                natural_frequency_rad_s,
-            } => {
+            Hyperprior::Conjugate { hyper, power, natural_frequency_rad_s } => {
                 let log_ratio = -2.0 * log_intensity - 4.0 * natural_frequency_rad_s.ln();
-                let power = alpha_1 + excess_power;
-                let shape = 0.5 * freedom + power + alpha_2;
-                let scale = 0.5 * (residual + 2.0 * beta_2 + log_ratio.exp() * beta_1);
+                // The flat constant of the moment has already taken the rank's share.
+                let n = filtered.n_samples;
+                let excess = power.exponent(n) - PriorPower::Rank.exponent(n);
+                let power = hyper.alpha1 + excess;
+                let shape = 0.5 * freedom + power + hyper.alpha2;
+                let scale = 0.5 * (residual + 2.0 * hyper.beta2 + log_ratio.exp() * hyper.beta1);
                 (common + power * log_ratio - shape * scale.ln(), shape, scale)
             }
         };

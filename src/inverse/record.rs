@@ -61,12 +61,27 @@ impl Record {
         (self.roll_rad.iter().map(|r| (r - mean).powi(2)).sum::<f64>() / n).sqrt()
     }
 
+    /// Whether all samples are one step apart.
+    pub fn is_even(&self) -> bool {
+        let step = self.time_s[1];
+        self.time_s.iter().enumerate().all(|(i, &t)| t.to_bits() == (step * i as f64).to_bits())
+    }
+
+    /// The same record averaged to at most `n_max` samples.
+    #[must_use]
+    pub fn at_most(&self, n_max: usize) -> Self {
+        let width = self.time_s.len().div_ceil(n_max);
+        let series = Series { time_s: self.time_s.clone(), value: self.roll_rad.clone() };
+        let (time_s, roll_rad) = averaged(&series, width);
+        let first_s = time_s[0];
+        let time_s = evened(time_s.iter().map(|t| t - first_s).collect());
+        Self { origin_s: self.origin_s + first_s, time_s, roll_rad, ..*self }
+    }
+
     /// Times in units of `1/w` [-].
     pub fn scaled_time(&self, frequency_rad_s: f64) -> Vec<f64> {
-        // A step common to all samples must stay the same number, so that its gains are reused.
-        let step = self.time_s[1];
-        let even = self.time_s.iter().enumerate().all(|(i, &t)| t.to_bits() == at(step, i));
-        if even {
+        if self.is_even() {
+            let step = self.time_s[1];
             // Rounding to a power of two makes the differences of multiples exact.
             let unit = (step * frequency_rad_s * 2.0_f64.powi(32)).round() / 2.0_f64.powi(32);
             (0..self.time_s.len()).map(|i| unit * i as f64).collect()
@@ -74,10 +89,6 @@ impl Record {
             self.time_s.iter().map(|t| t * frequency_rad_s).collect()
         }
     }
-}
-
-fn at(step_s: f64, sample: usize) -> u64 {
-    (step_s * sample as f64).to_bits()
 }
 
 /// Means over `width` samples, never across a hole in the record.

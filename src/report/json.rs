@@ -277,6 +277,6 @@ fn end_name(end: RunEnd) -> &'static str {
         RunEnd::ExcitationChanged => "excitation changed",
         RunEnd::Gap => "gap",
         RunEnd::RecordingEnded => "recording ended",
-        RunEnd::TooLong => "longest run reached",
+        RunEnd::TooLong => "too long",
     }
 }

@@ -13,6 +13,7 @@
 
 pub mod convergence;
 pub mod convolution;
+pub mod exact;
 pub mod least_squares;
 pub mod settings;
 

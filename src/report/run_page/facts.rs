@@ -100,6 +100,6 @@ fn end_reason(end: RunEnd) -> &'static str {
         RunEnd::ExcitationChanged => "ends where the excitation changed or stopped",
         RunEnd::Gap => "ends at a hole in the record",
         RunEnd::RecordingEnded => "ends with the recording",
-        RunEnd::TooLong => "ends at the longest run that is identified in one piece",
+        RunEnd::TooLong => "ends where a run as long as memory allows was full",
     }
 }

@@ -1,0 +1,183 @@
+//! One forced run, from its samples to everything that they say.
+
+use super::Setting;
+use super::drive::Drive;
+use super::estimate::Estimate;
+use super::forced::SteadyResponse;
+use super::identification::{
+    DampingFit, EquivalentDamping, ForcedResponse, Identification, Method, MomentHistory,
+};
+use super::identify_decay::AMPLITUDES_DEG;
+use super::moment_history::{Reference, state_posterior};
+use super::paper::{Convolution, least_squares};
+use super::paper_method;
+use super::record::Record;
+use crate::roll::damping::cubic_weight;
+use crate::run::{Run, RunKind};
+
+/// Identifies a forced run.
+pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, String> {
+    let restoring = setting.restoring_n_m_per_rad;
+    let response = SteadyResponse::of(run, restoring, setting.exciter.as_ref())?;
+    let record = Record::new(&run.roll)?;
+    let inertia = response.inertia_kg_m2;
+    let natural = (restoring / inertia.mean).sqrt();
+    let natural_sd = 0.5 * natural * inertia.sd / inertia.mean;
+    let drive = Drive::new(&response, &record, run, inertia.mean);
+    let driven = drive.response(&record.time_s, natural);
+    let tau = record.scaled_time(natural);
+    let free: Vec<f64> = record.roll_rad.iter().zip(&driven).map(|(r, d)| r - d[0]).collect();
+    let ordered = state_posterior(&tau, &free, drive.noise_intensity(&response, natural));
+    let zero = response.roll.mean;
+    let reference = Reference {
+        natural_frequency_rad_s: natural,
+        natural_frequency_sd_rad_s: natural_sd,
+        zero_rad: zero,
+        zero_sd_rad: response.roll.coefficient_sd,
+    };
+    let mut moment = drive.history(&record, &ordered.states, &driven, &reference);
+    let start = response.roll.at(record.origin_s - run.start_s);
+    let observable = |record: &Record| -> Result<(Convolution, Vec<f64>), String> {
+        let convolution = Convolution::new(record.roll_rad.len(), record.time_s[1], natural)
+            .map_err(|e| e.to_string())?;
+        let roll: Vec<f64> = record.roll_rad.iter().map(|r| r - zero).collect();
+        let moment: Vec<f64> = record
+            .time_s
+            .iter()
+            .map(|t| drive.at(record.origin_s - drive.origin_s() + t))
+            .collect();
+        let g = convolution.observable(&roll, start.value - zero, start.rate, Some(&moment));
+        Ok((convolution, g))
+    };
+    let mut least_squares_per_s2 = Vec::new();
+    if record.is_even() {
+        let (convolution, g) = observable(&record)?;
+        least_squares_per_s2 = least_squares(&g, &convolution);
+        moment.observable_rad = g;
+    }
+    let damping = damping(&response);
+    let mut chain = None;
+    let mut remarks = vec![
+        format!("the evidence favours a moment prior of order {}", ordered.order),
+        format!("restoring K = {restoring:.3} N m/rad from displacement and GM, taken as exact"),
+    ];
+    if setting.method == Method::PaperMcmc {
+        let short = record.at_most(paper_method::N_SAMPLES_MAX);
+        let (convolution, g) = observable(&short)?;
+        let drawn = paper_method::draw(&short, &convolution, &g, &moment, setting.seed)?;
+        remarks.extend(drawn.remarks);
+        (moment, chain) = (drawn.moment, Some(drawn.chain));
+        least_squares_per_s2 = least_squares(&g, &convolution);
+    }
+    let forced = forced_response(&response, &moment, run);
+    let noise_sd = response.roll.noise_sd;
+    Ok(Identification {
+        kind: RunKind::Forced,
+        method: setting.method,
+        natural_frequency_rad_s: Estimate::normal(natural, natural_sd),
+        initial_roll_rad: Estimate::normal(start.value - zero, response.roll.coefficient_sd),
+        initial_roll_rate_rad_per_s: Estimate::normal(
+            start.rate,
+            response.roll.coefficient_sd * response.roll.frequency_rad_s.mean,
+        ),
+        roll_offset_rad: Estimate::normal(zero, noise_sd / (run.roll.value.len() as f64).sqrt()),
+        roll_noise_rad: Estimate::normal(
+            noise_sd,
+            noise_sd / (2.0 * run.roll.value.len() as f64).sqrt(),
+        ),
+        equivalent_damping: equivalent_damping(&response),
+        half_cycles: Vec::new(),
+        moment,
+        resimulation: drive.resimulation(
+            &record,
+            &damping,
+            &reference,
+            (start.value - zero, start.rate),
+        ),
+        inertia_kg_m2: Some(inertia),
+        forced: Some(forced),
+        least_squares_per_s2,
+        damping,
+        chain,
+        remarks,
+    })
+}
+
+fn damping(response: &SteadyResponse) -> DampingFit {
+    let [b1, b3] = response.damping;
+    let c = &response.damping_covariance;
+    let (b1_sd, b3_sd) = (c[0][0].sqrt(), c[1][1].sqrt());
+    DampingFit {
+        b1_per_s: Estimate::normal(b1, b1_sd),
+        b3_s: Estimate::normal(b3, b3_sd),
+        correlation: c[0][1] / (b1_sd * b3_sd),
+    }
+}
+
+fn equivalent_damping(response: &SteadyResponse) -> Vec<EquivalentDamping> {
+    let w = response.roll.frequency_rad_s.mean;
+    let [b1, b3] = response.damping;
+    let c = &response.damping_covariance;
+    let fitted = |amplitude_rad: f64| {
+        let x = cubic_weight(w, amplitude_rad);
+        let variance = c[0][0] + 2.0 * x * c[0][1] + x * x * c[1][1];
+        Estimate::normal(b1 + x * b3, variance.max(0.0).sqrt())
+    };
+    let amplitude_rad = response.roll.amplitude();
+    let work = response.work_damping_n_m_s.scaled(1.0 / response.inertia_kg_m2.mean);
+    let mut all: Vec<EquivalentDamping> = AMPLITUDES_DEG
+        .iter()
+        .filter(|a| (0.8..=1.25).contains(&(a.to_radians() / amplitude_rad)) || **a == 5.0)
+        .map(|&amplitude_deg| EquivalentDamping {
+            amplitude_deg,
+            fitted_per_s: fitted(amplitude_deg.to_radians()),
+            // The work is known at the run's own amplitude alone.
+            local_per_s: ((amplitude_deg.to_radians() / amplitude_rad - 1.0).abs() < 0.02)
+                .then_some(work),
+            extrapolated: amplitude_deg.to_radians() > 1.02 * amplitude_rad,
+        })
+        .collect();
+    all.sort_by(|a, b| a.amplitude_deg.total_cmp(&b.amplitude_deg));
+    all
+}
+
+fn forced_response(response: &SteadyResponse, moment: &MomentHistory, run: &Run) -> ForcedResponse {
+    let share = response.roll.coefficient_sd;
+    ForcedResponse {
+        frequency_rad_s: response.roll.frequency_rad_s,
+        roll_amplitude_rad: Estimate::normal(response.roll.amplitude(), share),
+        moment_amplitude_n_m: Estimate::normal(
+            response.moment.amplitude(),
+            response.moment.coefficient_sd,
+        ),
+        phase_rad: response.phase_rad(),
+        peak_moment_per_s2: peak(moment, response.roll.frequency_rad_s.mean),
+        work_damping_n_m_s: response.work_damping_n_m_s,
+        moment_time_s: response.moment_time_s.iter().map(|t| run.start_s + t).collect(),
+        moment_n_m: response.moment_n_m.clone(),
+    }
+}
+
+/// Mean of the largest `|U|` of each cycle, with the standard error over cycles.
+fn peak(moment: &MomentHistory, frequency_rad_s: f64) -> Estimate {
+    let start_s = moment.time_s[0];
+    let period_s = std::f64::consts::TAU / frequency_rad_s;
+    let mut peaks: Vec<(f64, f64)> = Vec::new();
+    for ((time_s, mean), sd) in moment.time_s.iter().zip(&moment.mean_per_s2).zip(&moment.sd_per_s2)
+    {
+        let cycle = ((time_s - start_s) / period_s) as usize;
+        peaks.resize(peaks.len().max(cycle + 1), (0.0, 0.0));
+        if mean.abs() > peaks[cycle].0 {
+            peaks[cycle] = (mean.abs(), *sd);
+        }
+    }
+    // The last cycle is cut short.
+    if peaks.len() > 1 {
+        peaks.pop();
+    }
+    let n = peaks.len() as f64;
+    let mean = peaks.iter().map(|p| p.0).sum::<f64>() / n;
+    let scatter = peaks.iter().map(|p| (p.0 - mean).powi(2)).sum::<f64>() / n;
+    let band = peaks.iter().map(|p| p.1.powi(2)).sum::<f64>() / n;
+    Estimate::normal(mean, (scatter.max(band) / n).sqrt())
+}
