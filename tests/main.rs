@@ -1,6 +1,9 @@
 //! Stories.
 #![expect(clippy::print_stdout, reason = "a failing story shows what it saw")]
 
+mod architecture;
+mod bad_input;
+mod campaign_folder;
 mod dense_posterior;
 mod run_finding_kvlcc2;
 mod sampler_cases;
@@ -19,5 +22,8 @@ mod run_finding_decays;
 mod run_finding_forced;
 mod run_finding_kvlcc2;
 mod run_finding_scene;
+mod the_simulated_tank_keeps_its_script;
+mod the_simulated_tank_writes_campaigns;
+mod the_command_line;
 mod the_simulated_tank_keeps_its_script;
 mod the_simulated_tank_writes_campaigns;

@@ -1,5 +1,14 @@
 //! The campaign: one day's model, tank and recordings, as written in `campaign.toml`.
 
+mod columns;
+mod mistake;
+mod particulars;
+mod read;
+mod recordings;
+mod speeds;
+mod tree;
+mod units;
+
 use std::path::PathBuf;
 
 use devices::Quantity;
@@ -7,6 +16,9 @@ use replay::Columns;
 
 use crate::hull::{Hull, Water};
 use crate::roll::exciting_moment::Exciter;
+
+pub use mistake::Mistake;
+pub use read::{FILE_NAME, read};
 
 /// A validated campaign file; every value is in SI units and in its physical range.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,1 +1,60 @@
 //! The commands of `rolltank`, one file each.
+
+mod check;
+mod demo;
+mod exit;
+mod failure;
+mod fresh_folder;
+mod identify;
+mod import;
+mod method;
+mod replay;
+mod replaying;
+mod report;
+mod simulate;
+mod tables;
+mod terminal;
+
+use std::io::Write;
+
+use clap::{Parser, Subcommand};
+
+pub use exit::Exit;
+pub use failure::Failure;
+
+/// Roll damping from recorded roll tests, run by run and against Froude number.
+#[derive(Debug, Parser)]
+#[command(name = "rolltank", version, arg_required_else_help = true)]
+#[command(after_help = "Exit codes: 0 done; 1 failed; 2 wrong usage or campaign file; \
+    3 finished, with data lost or runs rejected that were asked for.")]
+pub struct CommandLine {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Demo(demo::Arguments),
+    Check(check::Arguments),
+    Replay(replay::Arguments),
+    Identify(identify::Arguments),
+    Report(report::Arguments),
+    Simulate(simulate::Arguments),
+    Import(import::Arguments),
+}
+
+/// Does what the command line asks for; results go to `out`, progress to standard error.
+///
+/// # Errors
+/// [`Failure`], with its exit code and its hints.
+pub fn run(line: &CommandLine, out: &mut dyn Write) -> Result<Exit, Failure> {
+    match &line.command {
+        Command::Demo(arguments) => demo::run(arguments, out),
+        Command::Check(arguments) => check::run(arguments, out),
+        Command::Replay(arguments) => replay::run(arguments, out),
+        Command::Identify(arguments) => identify::run(arguments, out),
+        Command::Report(arguments) => report::run(arguments, out),
+        Command::Simulate(arguments) => simulate::run(arguments, out),
+        Command::Import(arguments) => import::run(arguments, out),
+    }
+}

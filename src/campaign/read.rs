@@ -1,0 +1,141 @@
+//! Reading `campaign.toml` to its end, so that every mistake in it is known at once.
+
+use std::path::Path;
+
+use devices::Quantity;
+use replay::Columns;
+
+use super::mistake::Mistake;
+use super::tree::{Section, Source};
+use super::{Campaign, Recording, columns, particulars, recordings};
+
+/// Name of the campaign file in its folder.
+pub const FILE_NAME: &str = "campaign.toml";
+
+/// Reads the campaign file of a folder and looks for the recordings it names.
+///
+/// # Errors
+/// Every mistake in the file, in the order of its lines.
+pub fn read(folder: &Path) -> Result<Campaign, Vec<Mistake>> {
+    let path = folder.join(FILE_NAME);
+    let text = std::fs::read_to_string(&path).map_err(|error| vec![unreadable(folder, &error)])?;
+    let source = Source::new(path.display().to_string(), &text);
+    let Some(tree) = source.parse() else { return Err(source.into_mistakes()) };
+    let campaign = whole(&source, &source.root(tree.get_ref()), folder);
+    match (campaign, source.into_mistakes()) {
+        (Some(campaign), mistakes) if mistakes.is_empty() => Ok(campaign),
+        (_, mistakes) => Err(mistakes),
+    }
+}
+
+fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campaign> {
+    let name = root.text("name").map(str::to_owned);
+    let hull = root.required_section("hull").and_then(|section| particulars::hull(&section));
+    let water = particulars::water(root.section("water").as_ref());
+    let tank = particulars::tank(root.section("tank").as_ref(), hull.as_ref());
+    let exciter = root.section("exciter").and_then(|section| particulars::exciter(&section));
+    let columns = root.section("columns").map(|section| columns::read(&section));
+    let known = columns.clone().unwrap_or_default();
+    let recordings = if root.holds("recording") {
+        let named = |quantity: Quantity| root.holds_below("columns", quantity.name());
+        recordings::read(root.sections("recording"), folder, &named)
+    } else {
+        root.leave("recording");
+        found(source, folder)
+    };
+    // Live instruments and the plan of the day take no part in reading recordings.
+    root.leave("device");
+    root.leave("plan");
+    root.close();
+    check_columns(root, columns.as_ref(), &recordings);
+    check_exciter(root, &known);
+    Some(Campaign {
+        folder: folder.to_owned(),
+        name: name.unwrap_or_else(|| folder_name(folder)),
+        hull: hull?,
+        water,
+        tank,
+        exciter,
+        columns: known,
+        recordings,
+    })
+}
+
+fn found(source: &Source<'_>, folder: &Path) -> Vec<Recording> {
+    match replay::list_recordings(folder) {
+        Ok(paths) if paths.is_empty() => {
+            let hint = "put the recordings (*.mcap, *.csv) beside campaign.toml";
+            source.add(None, "the folder holds no recording".to_owned(), Some(hint.to_owned()));
+            Vec::new()
+        }
+        Ok(paths) => recordings::found(folder, paths),
+        Err(error) => {
+            source.add(None, format!("the folder cannot be searched: {error}"), None);
+            Vec::new()
+        }
+    }
+}
+
+/// Tables of numbers say nothing about their channels; MCAP recordings of our own do.
+fn check_columns(root: &Section<'_>, columns: Option<&Columns>, recordings: &[Recording]) {
+    let table = recordings
+        .iter()
+        .flat_map(|recording| &recording.files)
+        .find(|(_, path)| !recordings::is_self_describing(path));
+    let Some((_, path)) = table else { return };
+    match columns {
+        None => root.mistake(
+            "columns",
+            format!("[columns] is missing, and \"{}\" needs it", path.display()),
+            "add [columns] with `time = { column = \"t\", unit = \"s\" }` and \
+             `roll = { column = \"roll\", unit = \"deg\" }`, each header as in the file",
+        ),
+        Some(columns) if columns.time.is_none() && columns.sample_rate_hz.is_none() => {
+            let every_channel_has_its_own =
+                columns.channels.iter().all(|channel| channel.time.is_some());
+            if !every_channel_has_its_own && !root.holds_below("columns", "time") {
+                root.mistake(
+                    "columns",
+                    format!("[columns] names no time, and \"{}\" needs it", path.display()),
+                    "add `time = { column = \"t\", unit = \"s\" }`, or `sample_rate_hz = 100.0` \
+                     for recordings without time stamps",
+                );
+            }
+        }
+        Some(_) => {}
+    }
+}
+
+fn check_exciter(root: &Section<'_>, columns: &Columns) {
+    let force = columns.channels.iter().any(|channel| channel.quantity == Quantity::Force);
+    if force && !root.holds("exciter") {
+        root.mistake(
+            "columns",
+            "a force is recorded, but no [exciter] says how it becomes a moment".to_owned(),
+            "add [exciter] with `moment_arm_m = ...`, or drop `force` from [columns] to use \
+             the decays alone",
+        );
+    }
+}
+
+fn folder_name(folder: &Path) -> String {
+    let resolved = folder.canonicalize();
+    let folder = resolved.as_deref().unwrap_or(folder);
+    folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
+fn unreadable(folder: &Path, error: &std::io::Error) -> Mistake {
+    let hint = if folder.is_file() {
+        "name the folder that holds campaign.toml, not a file".to_owned()
+    } else if folder.is_dir() {
+        "write a campaign.toml in that folder, or let `rolltank demo` make an example".to_owned()
+    } else {
+        format!("there is no folder \"{}\"", folder.display())
+    };
+    Mistake {
+        file: folder.join(FILE_NAME).display().to_string(),
+        line: None,
+        message: format!("cannot be read: {}", error.to_string().to_lowercase()),
+        hint: Some(hint),
+    }
+}

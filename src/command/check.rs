@@ -1,0 +1,119 @@
+//! `rolltank check`: every mistake of a campaign at once, without identifying anything.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use ::replay::{Note, Severity};
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::failure::told;
+use super::terminal::Terminal;
+use super::{Exit, Failure};
+use crate::campaign::{self, Campaign, FILE_NAME, Mistake};
+use crate::pipeline::{self, PipelineError, Surveyed};
+
+/// Schema of the JSON output; its number rises when a field changes its meaning.
+const SCHEMA: &str = "rolltank.check/1";
+
+/// Check the campaign file and read every recording; tells every mistake with its place
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Folder that holds campaign.toml
+    campaign: PathBuf,
+    /// Print JSON instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
+    let (mistakes, recordings) = match campaign::read(&arguments.campaign) {
+        Err(mistakes) => (mistakes, Vec::new()),
+        Ok(campaign) => survey(&campaign),
+    };
+    let exit = match (&mistakes[..], recordings.iter().any(has_lost_data)) {
+        ([], false) => Exit::Done,
+        ([], true) => Exit::Incomplete,
+        _ => Exit::Usage,
+    };
+    if arguments.json {
+        let recordings: Vec<Value> = recordings.iter().map(surveyed_json).collect();
+        let ok = mistakes.is_empty();
+        let report =
+            json!({"schema": SCHEMA, "ok": ok, "mistakes": mistakes, "recordings": recordings});
+        writeln!(out, "{report:#}")?;
+        return Ok(exit);
+    }
+    for surveyed in &recordings {
+        tell(out, surveyed)?;
+    }
+    if !mistakes.is_empty() {
+        return Err(Failure::Campaign { mistakes });
+    }
+    writeln!(out, "no mistake found")?;
+    Ok(exit)
+}
+
+fn has_lost_data(surveyed: &Surveyed) -> bool {
+    surveyed.notes.iter().any(|note| note.severity == Severity::Lost)
+}
+
+fn survey(campaign: &Campaign) -> (Vec<Mistake>, Vec<Surveyed>) {
+    let mut mistakes = campaign.unreachable_speeds();
+    let mut recordings = Vec::new();
+    let terminal = Terminal::new();
+    let surveyed = pipeline::survey(campaign, &mut |recording, done, total| {
+        terminal.show(done, total, recording.to_owned());
+    });
+    for (recording, surveyed) in campaign.recordings.iter().zip(surveyed) {
+        match surveyed {
+            Ok(surveyed) => recordings.push(surveyed),
+            Err(error) => mistakes.push(mistake(campaign, recording.line, &error)),
+        }
+    }
+    mistakes.sort_by_key(|mistake| mistake.line);
+    (mistakes, recordings)
+}
+
+fn mistake(campaign: &Campaign, line: Option<usize>, error: &PipelineError) -> Mistake {
+    let (message, hints) = told(error);
+    let file = campaign.folder.join(FILE_NAME).display().to_string();
+    Mistake { file, line, message, hint: hints.into_iter().next().or_else(|| error.hint()) }
+}
+
+fn tell(out: &mut dyn Write, surveyed: &Surveyed) -> std::io::Result<()> {
+    let Surveyed { recording, start_s, end_s, channels, notes } = surveyed;
+    let duration_s = end_s - start_s;
+    write!(out, "{recording}: {duration_s:.1} s")?;
+    for (quantity, n_samples) in channels {
+        write!(out, ", {} {n_samples} samples", quantity.name())?;
+    }
+    writeln!(out)?;
+    for note in notes {
+        writeln!(out, "  {}: {}", severity(note), note.message)?;
+    }
+    Ok(())
+}
+
+fn surveyed_json(surveyed: &Surveyed) -> Value {
+    let Surveyed { recording, start_s, end_s, channels, notes } = surveyed;
+    let channels: Vec<Value> = channels
+        .iter()
+        .map(|(quantity, n)| json!({"channel": quantity.name(), "n_samples": n}))
+        .collect();
+    let notes: Vec<Value> = notes
+        .iter()
+        .map(|note| json!({"severity": severity(note), "message": note.message}))
+        .collect();
+    json!({
+        "recording": recording, "start_s": start_s, "end_s": end_s,
+        "channels": channels, "notes": notes,
+    })
+}
+
+fn severity(note: &Note) -> &'static str {
+    match note.severity {
+        Severity::Mended => "mended",
+        Severity::Lost => "lost",
+    }
+}

@@ -1,0 +1,147 @@
+//! Why a command could not do its work, told with hints and an exit code.
+
+use std::error::Error;
+use std::io::{self, Write};
+use std::iter::successors;
+use std::path::PathBuf;
+
+use super::Exit;
+use crate::campaign::Mistake;
+use crate::pipeline::{PipelineError, WriteError};
+use crate::tank::{ScenarioError, TankError};
+use ::replay::ReplayError;
+
+/// A command that could not do its work.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// The campaign file is wrong.
+    #[error("{} mistake(s) in the campaign file", mistakes.len())]
+    Campaign {
+        /// Every mistake in it.
+        mistakes: Vec<Mistake>,
+    },
+    /// The scenario is wrong.
+    #[error(transparent)]
+    Scenario {
+        /// What is wrong with it.
+        #[from]
+        source: ScenarioError,
+    },
+    /// The campaign cannot be replayed.
+    #[error(transparent)]
+    Replay {
+        /// Why not.
+        #[from]
+        source: PipelineError,
+    },
+    /// A recording cannot be brought in.
+    #[error(transparent)]
+    Import {
+        /// Why not.
+        #[from]
+        source: ReplayError,
+    },
+    /// The results cannot be written.
+    #[error(transparent)]
+    Results {
+        /// Why not.
+        #[from]
+        source: WriteError,
+    },
+    /// The simulated campaign cannot be written.
+    #[error(transparent)]
+    Tank {
+        /// Why not.
+        #[from]
+        source: TankError,
+    },
+    /// A file or folder cannot be read or made.
+    #[error("\"{}\"", path.display())]
+    File {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A folder that was to be written anew holds something.
+    #[error("\"{}\" exists already and is not an empty folder", path.display())]
+    NotFresh {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Standard output cannot be written.
+    #[error("standard output")]
+    Output {
+        /// What the system said.
+        #[from]
+        source: io::Error,
+    },
+}
+
+impl From<Vec<Mistake>> for Failure {
+    fn from(mistakes: Vec<Mistake>) -> Self {
+        Self::Campaign { mistakes }
+    }
+}
+
+impl Failure {
+    /// How the command ends.
+    pub fn exit(&self) -> Exit {
+        match self {
+            Self::Campaign { .. } | Self::Scenario { .. } | Self::NotFresh { .. } => Exit::Usage,
+            _ => Exit::Failed,
+        }
+    }
+
+    /// Whether only the reader of standard output went away.
+    pub fn is_broken_pipe(&self) -> bool {
+        matches!(self, Self::Output { source } if source.kind() == io::ErrorKind::BrokenPipe)
+    }
+
+    /// Writes the error, its causes and its hints.
+    pub fn tell(&self, err: &mut dyn Write) -> io::Result<()> {
+        if let Self::Campaign { mistakes } = self {
+            for mistake in mistakes {
+                writeln!(err, "error: {mistake}")?;
+                if let Some(hint) = &mistake.hint {
+                    writeln!(err, "hint: {hint}")?;
+                }
+            }
+            return Ok(());
+        }
+        let (message, hints) = told(self);
+        writeln!(err, "error: {message}")?;
+        hints.iter().chain(&self.hint()).try_for_each(|hint| writeln!(err, "hint: {hint}"))
+    }
+
+    fn hint(&self) -> Option<String> {
+        match self {
+            Self::Replay { source } => source.hint(),
+            Self::Import { source } => source.hint(),
+            Self::NotFresh { .. } => {
+                Some("name a new folder with -o; nothing is ever overwritten".to_owned())
+            }
+            _ => None,
+        }
+    }
+}
+
+/// An error and its causes joined by `": "`, and the hints that follow a message on its own line.
+///
+/// A cause that its error has told already is not told again.
+pub(super) fn told(error: &dyn Error) -> (String, Vec<String>) {
+    let mut message = String::new();
+    let mut hints = Vec::new();
+    for error in successors(Some(error), |error| (*error).source()) {
+        let text = error.to_string();
+        let mut parts = text.split("\nhint: ");
+        let own = parts.next().unwrap_or_default();
+        if message.is_empty() {
+            message.push_str(own);
+        } else if !message.contains(own) {
+            message = format!("{message}: {own}");
+        }
+        hints.extend(parts.map(str::to_owned));
+    }
+    (message, hints)
+}

@@ -1,0 +1,78 @@
+//! Replaying a campaign with progress on the terminal, for every command that needs its runs.
+
+use std::path::Path;
+
+use ::replay::{Note, Severity};
+
+use super::method::Identifying;
+use super::terminal::Terminal;
+use super::{Exit, Failure};
+use crate::campaign::Campaign;
+use crate::pipeline::{self, Options, Progress};
+use crate::results::Results;
+
+/// What a replay brought.
+pub(super) struct Replayed {
+    /// Runs, rejections, laws.
+    pub(super) results: Results,
+    /// Done, or incomplete when data was lost or a listed recording gave no run.
+    pub(super) exit: Exit,
+}
+
+/// Replays a campaign; with a folder, writes each run's page there at once and the rest at the end.
+pub(super) fn replay(
+    campaign: &Campaign,
+    identifying: Identifying,
+    speed: Option<f64>,
+    into: Option<&Path>,
+) -> Result<Replayed, Failure> {
+    let options = Options {
+        method: identifying.method(),
+        seed: identifying.seed(),
+        speed,
+        keep_histories: false,
+    };
+    let terminal = Terminal::new();
+    let mut n_lost = 0;
+    let results = pipeline::replay(
+        campaign,
+        &options,
+        &mut |progress| match progress {
+            Progress::Read { recording, bytes_read, bytes_total, n_runs } => {
+                let message = format!("{recording}, {n_runs} runs");
+                terminal.show(bytes_read, bytes_total, message);
+            }
+            Progress::Ended { recording, notes } => {
+                n_lost += terminal.pause(|| log_notes(recording, notes));
+            }
+        },
+        &mut |run, overview| {
+            terminal.line(&format!("{}  Fr {:.3}  {}", run.id, run.froude, run.condition));
+            if let Some(dir) = into {
+                pipeline::write_run_page(campaign, run, overview, dir)?;
+            }
+            Ok(())
+        },
+    )?;
+    drop(terminal);
+    if let Some(dir) = into {
+        pipeline::write_results(campaign, &results, dir)?;
+    }
+    let unanswered = pipeline::unanswered(campaign, &results);
+    for sentence in &unanswered {
+        tracing::warn!("{sentence}");
+    }
+    let complete = n_lost == 0 && unanswered.is_empty();
+    Ok(Replayed { results, exit: if complete { Exit::Done } else { Exit::Incomplete } })
+}
+
+/// Logs what was mended or lost in a recording; returns how many things were lost.
+pub(super) fn log_notes(recording: &str, notes: &[Note]) -> usize {
+    for note in notes {
+        match note.severity {
+            Severity::Lost => tracing::error!("recording \"{recording}\": {}", note.message),
+            Severity::Mended => tracing::warn!("recording \"{recording}\": {}", note.message),
+        }
+    }
+    notes.iter().filter(|note| note.severity == Severity::Lost).count()
+}

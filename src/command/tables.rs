@@ -1,0 +1,33 @@
+//! Results on standard output, for people or for programs.
+
+use std::io::{self, Write};
+
+use crate::campaign::Campaign;
+use crate::report;
+use crate::results::Results;
+
+/// Stretches told on a terminal; the JSON and the report hold every one.
+const STRETCHES_TOLD: usize = 10;
+
+/// The damping table, the laws and the first of the stretches that were not used.
+pub(super) fn human(out: &mut dyn Write, results: &Results) -> io::Result<()> {
+    writeln!(out, "{}", report::damping_table(results).trim_end())?;
+    let rejected = &results.rejected;
+    if rejected.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\nnot used:")?;
+    for stretch in rejected.iter().take(STRETCHES_TOLD) {
+        let (recording, start_s, end_s) = (&stretch.recording, stretch.start_s, stretch.end_s);
+        writeln!(out, "  {recording}  {start_s:.2} to {end_s:.2} s: {}", stretch.reason)?;
+    }
+    if let Some(more) = rejected.len().checked_sub(STRETCHES_TOLD).filter(|more| *more > 0) {
+        writeln!(out, "  and {more} more; the report and --json hold every one")?;
+    }
+    Ok(())
+}
+
+/// The identification in the versioned JSON of the contract.
+pub(super) fn json(out: &mut dyn Write, campaign: &Campaign, results: &Results) -> io::Result<()> {
+    out.write_all(report::identification_json(campaign, results).as_bytes())
+}

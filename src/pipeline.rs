@@ -1,1 +1,0 @@
-//! From recordings to results: play, find runs, identify each as it ends.

@@ -1,0 +1,137 @@
+//! From recordings to results: play, find runs, identify each as it ends.
+//!
+//! One thread reads and finds runs, the caller's thread identifies them, in the order in which
+//! they ended; a short queue between both keeps the memory bounded and the order fixed.
+
+mod claims;
+mod error;
+mod files;
+mod histories;
+mod identify;
+mod names;
+mod overview;
+mod play;
+
+use std::sync::mpsc;
+use std::thread;
+
+use replay::Note;
+
+use crate::campaign::Campaign;
+use crate::inverse::identification::Method;
+use crate::results::{IdentifiedRun, Overview, Results};
+
+pub use error::PipelineError;
+pub use files::{REPORT_PAGE, WriteError, results_folder, write_results, write_run_page};
+pub use names::labels;
+pub use play::{Surveyed, survey};
+
+use identify::Identifier;
+use play::Heard;
+
+/// How a campaign is replayed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// How the moment history of each run is inferred.
+    pub method: Method,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Recorded seconds played in one second [-]; none plays as fast as it goes.
+    pub speed: Option<f64>,
+    /// Whether the histories of every run are kept after `on_run` has seen them; a day has more of
+    /// them than memory.
+    pub keep_histories: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { method: Method::Exact, seed: 1, speed: None, keep_histories: true }
+    }
+}
+
+/// How far a replay has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Progress<'p> {
+    /// More of a recording has been read.
+    Read {
+        /// Name of the recording.
+        recording: &'p str,
+        /// Bytes read of all recordings.
+        bytes_read: u64,
+        /// Bytes of all recordings.
+        bytes_total: u64,
+        /// Runs identified so far.
+        n_runs: usize,
+    },
+    /// A recording has ended.
+    Ended {
+        /// Name of the recording.
+        recording: &'p str,
+        /// What was mended or lost while reading it.
+        notes: &'p [Note],
+    },
+}
+
+/// An error of whoever listens to the runs.
+pub type ListenerError = Box<dyn std::error::Error + Send + Sync>;
+
+/// Messages between both threads: enough to keep both busy, few enough to bound the memory.
+const QUEUE_LENGTH: usize = 8;
+
+/// Replays every recording of a campaign and identifies its runs.
+///
+/// Each run is handed to `on_run` at once, with the overview of its recording up to its end.
+///
+/// # Errors
+/// [`PipelineError`] at the first recording that cannot be read, two recordings that overlap in
+/// time, or the first error of `on_run`.
+pub fn replay(
+    campaign: &Campaign,
+    options: &Options,
+    progress: &mut dyn FnMut(Progress<'_>),
+    on_run: &mut dyn FnMut(&IdentifiedRun, &Overview) -> Result<(), ListenerError>,
+) -> Result<Results, PipelineError> {
+    let (heard, queue) = mpsc::sync_channel(QUEUE_LENGTH);
+    thread::scope(|scope| {
+        scope.spawn(move || play::campaign(campaign, options.speed, &heard));
+        let mut identifier = Identifier::new(campaign, options);
+        for message in queue {
+            match message? {
+                Heard::Read { index, bytes_read, bytes_total } => progress(Progress::Read {
+                    recording: &campaign.recordings[index].name,
+                    bytes_read,
+                    bytes_total,
+                    n_runs: identifier.n_runs(),
+                }),
+                Heard::Run { index, run, drive_is_moment, overview } => {
+                    if let Some(run) = identifier.identify(index, *run, drive_is_moment) {
+                        on_run(run, &overview).map_err(|source| PipelineError::Listener {
+                            run: run.id.clone(),
+                            source,
+                        })?;
+                        if !options.keep_histories {
+                            histories::drop_from(run);
+                        }
+                    }
+                }
+                Heard::Rejected { index, rejection } => identifier.reject(index, rejection),
+                Heard::Ended { overview, notes } => {
+                    progress(Progress::Ended { recording: &overview.recording, notes: &notes });
+                    identifier.end_recording(overview);
+                }
+            }
+        }
+        Ok(identifier.into_results())
+    })
+}
+
+/// The listed recordings in which no run could be identified, as sentences.
+///
+/// Recordings that were merely found in the folder were not asked for by name.
+pub fn unanswered(campaign: &Campaign, results: &Results) -> Vec<String> {
+    let listed = campaign.recordings.iter().filter(|recording| recording.line.is_some());
+    listed
+        .filter(|recording| !results.runs.iter().any(|run| run.recording == recording.name))
+        .map(|recording| format!("recording \"{}\" gave no run", recording.name))
+        .collect()
+}

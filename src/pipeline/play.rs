@@ -1,0 +1,227 @@
+//! Playing the recordings of a campaign one after the other into the run finder.
+
+use std::sync::mpsc::SyncSender;
+use std::thread;
+use std::time::Duration;
+
+use devices::{Device, Quantity, Reading, Sample};
+use replay::{Note, Player};
+
+use super::PipelineError;
+use super::claims::Claims;
+use super::overview::OverviewBuilder;
+use crate::campaign::{Campaign, Recording};
+use crate::results::Overview;
+use crate::run::{Event, Limits, Rejection, Run, RunFinder};
+
+/// What the playing thread tells the identifying one.
+pub(super) enum Heard {
+    /// A batch of samples has been read.
+    Read { index: usize, bytes_read: u64, bytes_total: u64 },
+    /// A run has ended; the overview shows the recording up to here.
+    Run { index: usize, run: Box<Run>, drive_is_moment: bool, overview: Overview },
+    /// A stretch will not be used.
+    Rejected { index: usize, rejection: Rejection },
+    /// The recording has ended.
+    Ended { overview: Overview, notes: Vec<Note> },
+}
+
+type Queue = SyncSender<Result<Heard, PipelineError>>;
+
+/// The listener has gone away, so there is nobody to play for.
+struct Unheard;
+
+/// Plays every recording; stops at the first that cannot be read, or when nobody listens.
+pub(super) fn campaign(campaign: &Campaign, speed: Option<f64>, queue: &Queue) {
+    let mut claims = Claims::default();
+    let bytes_total = campaign.recordings.iter().map(size_bytes).sum();
+    let mut bytes_before = 0;
+    for (index, recording) in campaign.recordings.iter().enumerate() {
+        let mut listening = Listening {
+            index,
+            recording: &recording.name,
+            finder: RunFinder::new(limits(campaign, recording)),
+            events: Vec::new(),
+            overview: OverviewBuilder::default(),
+            drive_is_moment: false,
+            queue,
+        };
+        let mut heard = Ok(());
+        let mut pace = Pace { speed, last_s: None };
+        let played = play(campaign, recording, &mut claims, &mut |batch, bytes_read| {
+            pace.wait(batch);
+            heard = listening.batch(batch).and_then(|()| {
+                let bytes_read = bytes_before + bytes_read;
+                listening.tell(Heard::Read { index, bytes_read, bytes_total })
+            });
+            heard.is_ok()
+        });
+        let heard = heard.and_then(|()| match played {
+            Ok(notes) => listening.end(notes),
+            // The receiver ends at an error, so whether it was still there does not matter.
+            Err(error) => queue.send(Err(error)).map_err(|_| Unheard).and(Err(Unheard)),
+        });
+        if heard.is_err() {
+            return;
+        }
+        bytes_before += size_bytes(recording);
+    }
+}
+
+/// A recording that was read from end to end, without looking for runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surveyed {
+    /// Name of the recording, as in the campaign file.
+    pub recording: String,
+    /// First time stamp [s].
+    pub start_s: f64,
+    /// Last time stamp [s].
+    pub end_s: f64,
+    /// Samples of each channel that was recorded.
+    pub channels: Vec<(Quantity, u64)>,
+    /// What was mended or lost while reading.
+    pub notes: Vec<Note>,
+}
+
+/// Reads every recording of a campaign to its end and tells what each holds, or what is wrong.
+pub fn survey(
+    campaign: &Campaign,
+    progress: &mut dyn FnMut(&str, u64, u64),
+) -> Vec<Result<Surveyed, PipelineError>> {
+    let mut claims = Claims::default();
+    let bytes_total = campaign.recordings.iter().map(size_bytes).sum();
+    let mut bytes_before = 0;
+    let mut all = Vec::new();
+    for recording in &campaign.recordings {
+        let (mut start_s, mut end_s) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut counts = Quantity::ALL.map(|quantity| (quantity, 0));
+        let played = play(campaign, recording, &mut claims, &mut |batch, bytes_read| {
+            for sample in batch {
+                start_s = start_s.min(sample.time_s);
+                end_s = end_s.max(sample.time_s);
+                counts.iter_mut().filter(|count| count.0 == sample.quantity).for_each(|c| c.1 += 1);
+            }
+            progress(&recording.name, bytes_before + bytes_read, bytes_total);
+            true
+        });
+        claims.end_recording();
+        bytes_before += size_bytes(recording);
+        all.push(played.map(|notes| Surveyed {
+            recording: recording.name.clone(),
+            start_s,
+            end_s,
+            channels: counts.into_iter().filter(|(_, count)| *count > 0).collect(),
+            notes,
+        }));
+    }
+    all
+}
+
+/// Hands a recording to `listener` batch by batch until it ends or the listener has had enough.
+fn play(
+    campaign: &Campaign,
+    recording: &Recording,
+    claims: &mut Claims,
+    listener: &mut dyn FnMut(&[Sample], u64) -> bool,
+) -> Result<Vec<Note>, PipelineError> {
+    let mut player = Player::open(&recording.name, &recording.files, &campaign.columns)?;
+    let size_bytes = size_bytes(recording);
+    let mut batch = Vec::new();
+    loop {
+        batch.clear();
+        let reading = player.read(&mut batch);
+        if let ([first, ..], [.., last]) = (&batch[..], &batch[..]) {
+            let zero_s = player.zero_log_time_ns() as f64 / 1e9;
+            claims.extend(&recording.name, zero_s + first.time_s, zero_s + last.time_s)?;
+        }
+        let (read, total) = player.progress();
+        let share = read as f64 / total.max(1) as f64;
+        if !listener(&batch, (share * size_bytes as f64) as u64) || reading? == Reading::Ended {
+            claims.end_recording();
+            return Ok(player.notes().to_vec());
+        }
+    }
+}
+
+/// One recording on its way through the run finder.
+struct Listening<'q> {
+    index: usize,
+    recording: &'q str,
+    finder: RunFinder,
+    events: Vec<Event>,
+    overview: OverviewBuilder,
+    drive_is_moment: bool,
+    queue: &'q Queue,
+}
+
+impl Listening<'_> {
+    fn batch(&mut self, batch: &[Sample]) -> Result<(), Unheard> {
+        for sample in batch {
+            self.drive_is_moment |= sample.quantity == Quantity::Moment;
+            self.overview.push(sample);
+            self.finder.push(sample, &mut self.events);
+            if !self.events.is_empty() {
+                self.tell_events()?;
+            }
+        }
+        Ok(())
+    }
+
+    fn end(mut self, notes: Vec<Note>) -> Result<(), Unheard> {
+        self.finder.finish(&mut self.events);
+        self.tell_events()?;
+        let messages = notes.iter().map(|note| note.message.clone()).collect();
+        let overview = self.overview.so_far(self.recording, messages);
+        self.tell(Heard::Ended { overview, notes })
+    }
+
+    fn tell_events(&mut self) -> Result<(), Unheard> {
+        for event in std::mem::take(&mut self.events) {
+            let index = self.index;
+            self.tell(match event {
+                Event::Run(run) => Heard::Run {
+                    index,
+                    run: Box::new(run),
+                    drive_is_moment: self.drive_is_moment,
+                    overview: self.overview.so_far(self.recording, Vec::new()),
+                },
+                Event::Rejected(rejection) => Heard::Rejected { index, rejection },
+            })?;
+        }
+        Ok(())
+    }
+
+    fn tell(&self, heard: Heard) -> Result<(), Unheard> {
+        self.queue.send(Ok(heard)).map_err(|_| Unheard)
+    }
+}
+
+/// Plays at a multiple of the recorded pace by sleeping over the recorded time of each batch.
+struct Pace {
+    speed: Option<f64>,
+    last_s: Option<f64>,
+}
+
+impl Pace {
+    fn wait(&mut self, batch: &[Sample]) {
+        let (Some(speed), Some(sample)) = (self.speed, batch.last()) else { return };
+        let last_s = self.last_s.replace(sample.time_s).unwrap_or(batch[0].time_s);
+        let wait = Duration::try_from_secs_f64((sample.time_s - last_s) / speed);
+        thread::sleep(wait.unwrap_or_default());
+    }
+}
+
+fn limits(campaign: &Campaign, recording: &Recording) -> Limits {
+    Limits {
+        carriage_max_speed_m_s: campaign.tank.carriage_max_speed_m_s,
+        declared_speed_m_s: recording.speed_m_s,
+        length_pp_m: campaign.hull.length_pp_m,
+        gravity_m_s2: campaign.water.gravity_m_s2,
+    }
+}
+
+/// Bytes of a recording; a file that cannot be asked will say so when it is opened.
+fn size_bytes(recording: &Recording) -> u64 {
+    let files = recording.files.iter();
+    files.filter_map(|(_, path)| path.metadata().ok()).map(|metadata| metadata.len()).sum()
+}
