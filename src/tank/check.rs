@@ -17,12 +17,15 @@ pub(super) struct Problem {
     pub(super) hint: String,
 }
 
+/// Nothing, or the first mistake.
 pub(super) type Checked = Result<(), Problem>;
 
 /// Highest sample rate [Hz].
 const SAMPLE_RATE_MAX_HZ: f64 = 20_000.0;
-/// Largest `b1/w` and `b3 w` [-], five to ten times what stops a roll from swinging at all.
+/// Largest `b1/w` and `b3 w` [-]; a `b1/w` of 2 already stops a roll from swinging.
 pub(super) const OVERDAMPED: f64 = 10.0;
+
+/// Tells one mistake.
 pub(super) fn problem(table: Table, message: String, hint: &str) -> Checked {
     Err(Problem { table, message, hint: hint.to_owned() })
 }
