@@ -11,7 +11,7 @@ use mcap::records::{Record, op};
 use crate::error::ReplayError;
 use crate::mcap_records::Records;
 use crate::message::{Format, Found};
-use crate::note::{Note, Tally};
+use crate::note::{Note, Tally, counted};
 use crate::stamps::{StampFault, Stamped, Stamps, WAITING_MAX};
 use crate::stream::Stream;
 
@@ -275,16 +275,15 @@ impl Stream for McapStream {
         }
         if self.stamps.left_out > 0 {
             notes.push(Note::lost(format!(
-                "{place}: {} messages at the end left out, as they repeat the last time stamp",
-                self.stamps.left_out
+                "{place}: {} at the end left out, repeating the last time stamp",
+                counted(self.stamps.left_out, "message")
             )));
         }
         if let Some(offset) = self.records.torn_at() {
             notes.push(Note::lost(format!(
-                "{place}: the file is torn at byte {offset} of {}, {} messages before it were \
-                 read; hint: `mcap recover` makes it whole for other programs",
+                "{place}: the file is torn at byte {offset} of {}, {} before it read; hint: `mcap recover` makes it whole for other programs",
                 self.records.bytes_total(),
-                self.messages
+                counted(self.messages, "message")
             )));
         }
     }
