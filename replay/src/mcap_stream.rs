@@ -281,7 +281,8 @@ impl Stream for McapStream {
         }
         if let Some(offset) = self.records.torn_at() {
             notes.push(Note::lost(format!(
-                "{place}: the file is torn at byte {offset} of {}, {} before it read; hint: `mcap recover` makes it whole for other programs",
+                "{place}: the file is torn at byte {offset} of {}, {} before it read; \
+                 hint: `mcap recover` makes it whole for other programs",
                 self.records.bytes_total(),
                 counted(self.messages, "message")
             )));

@@ -41,7 +41,7 @@ pub(crate) fn message_type<'a>(set: &'a [u8], name: &str) -> Option<MessageType<
     })
 }
 
-/// The steps along a path of field names and list indices, or what stands there instead of a number.
+/// The steps along a path of field names and list indices, or what is there instead of a number.
 pub(crate) fn steps(set: &[u8], start: MessageType<'_>, path: &str) -> Result<Vec<Step>, Found> {
     let mut steps = Vec::new();
     let mut here = Some(start);

@@ -2,7 +2,8 @@
 //!
 //! Written out here because only two numbers of a message are wanted, and because the descriptors
 //! come from files that may be damaged: nothing here can panic, whatever the bytes.
-//! Source: Protocol Buffers Documentation, "Encoding", <https://protobuf.dev/programming-guides/encoding/>.
+//! Source: Protocol Buffers Documentation, "Encoding",
+//! <https://protobuf.dev/programming-guides/encoding/>.
 
 /// Value of a field as the wire carries it.
 #[derive(Debug, Clone, Copy, PartialEq)]
