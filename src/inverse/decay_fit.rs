@@ -241,7 +241,8 @@ impl Fit<'_> {
             Vec::new()
         };
         let positions: Vec<usize> = self.active().collect();
-        // (R'R)^-1 s^2 where the residual is noise, (R'R)^-1 S (R'R)^-1 where it is not.
+        // (R'R)^-1 s^2 where the residual is noise; where it is not, (R'R)^-1 S (R'R)^-1 on top,
+        // because S is itself estimated from few independent stretches and may come out small.
         let bread = sum_of_squares(&inverse);
         for (i, &p) in positions.iter().enumerate() {
             for (j, &q) in positions.iter().enumerate() {
@@ -292,7 +293,7 @@ fn sum_of_squares(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
 
-/// What correlation between samples adds to the covariance of the scores `J_t r_t`, with Bartlett's
+/// The covariance of the scores `J_t r_t` with what correlation between samples adds, by Bartlett's
 /// weights up to the lag that the scores' own persistence asks for (Andrews, Econometrica 59, 1991).
 fn correlated_scores(columns: &[Vec<f64>], residual_rad: &[f64]) -> Vec<Vec<f64>> {
     // Sums over a few samples carry the correlation at a fraction of the cost.
@@ -317,8 +318,9 @@ fn correlated_scores(columns: &[Vec<f64>], residual_rad: &[f64]) -> Vec<Vec<f64>
     let bandwidth = 1.1447 * (4.0 * above / below * n as f64).cbrt();
     let last = (bandwidth as usize).min(n / 4);
     let mut sum = vec![vec![0.0; scores.len()]; scores.len()];
-    for lag in 1..=last {
-        let weight = 1.0 - lag as f64 / (last + 1) as f64;
+    for lag in 0..=last {
+        let share = if lag == 0 { 0.5 } else { 1.0 };
+        let weight = share * (1.0 - lag as f64 / (last + 1) as f64);
         for (i, a) in scores.iter().enumerate() {
             for (j, b) in scores.iter().enumerate() {
                 let ahead = weight * lagged(a, b, lag);
