@@ -23,3 +23,4 @@ mod the_simulated_tank_keeps_its_script;
 mod the_simulated_tank_writes_campaigns;
 mod the_tables_and_the_catalogue_agree_with_the_results;
 mod kvlcc2_is_identified_as_published;
+mod the_paper_campaign_is_covered;
