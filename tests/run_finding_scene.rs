@@ -16,6 +16,8 @@ pub(crate) struct Scene {
     pub(crate) speed: &'static str,
     /// Keys of the pass beside its actions.
     pub(crate) pass: &'static str,
+    /// Seed of the draws.
+    pub(crate) seed: u64,
 }
 
 /// Bare hull of the paper at rest, roll alone.
@@ -25,6 +27,7 @@ pub(crate) const AT_REST: Scene = Scene {
     force: "",
     speed: "",
     pass: "froude = 0.0",
+    seed: 20,
 };
 
 /// The same with force and speed recorded, at Froude number 0.2.
@@ -70,7 +73,7 @@ impl Scene {
     /// Plays the actions and gives the samples with their truth.
     pub(crate) fn play(&self, actions: &str) -> SimulatedPass {
         let scenario = Scenario::parse(&self.text(actions), "scene.toml").unwrap();
-        simulate_pass(&scenario, 0, 20)
+        simulate_pass(&scenario, 0, self.seed)
     }
 
     /// Plays the actions, finds the runs and checks each against the truth.
