@@ -1,5 +1,6 @@
 //! A labelled scene of the simulated tank, and the check that its runs are found.
 
+use devices::Sample;
 use rolltank::run::{Event, Limits, Rejection, Run, RunEnd, RunFinder, RunKind};
 use rolltank::tank::{Scenario, SimulatedPass, TrueKind, TrueRun, simulate_pass};
 
@@ -133,9 +134,14 @@ impl Found {
 
 /// Feeds a played pass to the run finder.
 pub(crate) fn find(played: &SimulatedPass, limits: Limits) -> Found {
+    find_in(&played.samples, limits)
+}
+
+/// Feeds samples to the run finder.
+pub(crate) fn find_in(samples: &[Sample], limits: Limits) -> Found {
     let mut finder = RunFinder::new(limits);
     let mut events = Vec::new();
-    for sample in &played.samples {
+    for sample in samples {
         finder.push(sample, &mut events);
     }
     finder.finish(&mut events);

@@ -27,6 +27,8 @@ const NEW_START: f64 = 1.3;
 
 /// Amplitude left by a blow against the roll, as a share of that before it; a hand leaves less.
 const STRUCK_SHARE: f64 = 0.5;
+/// A carriage that has just reached its speed jolts the model for this long [s].
+const JOLT_S: f64 = 1.0;
 /// Why no decay begins after a hand.
 const TOUCHED: &str = "the roll after a touch is not free without another release";
 
@@ -53,6 +55,8 @@ pub(super) struct Motion {
     distrust: Option<&'static str>,
     /// The pass ended while the model rolled.
     pass_ended: bool,
+    /// The model has rolled otherwise since it was last still.
+    stirred: bool,
     /// Amplitude of the last decay when something touched the model [rad].
     touched_rad: f64,
     /// Half cycles at the start of the decay on which the hand that rocked it up may still be.
@@ -149,7 +153,7 @@ impl Motion {
     }
 
     fn search(&mut self, cycle: Cycle, closer: &mut Closer) {
-        self.trust_or_not(&cycle);
+        self.trust_or_not(&cycle, closer.records);
         let distrust = self.distrust;
         self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle, distrust)).extend(&cycle);
         if !cycle.is_driven() {
@@ -174,11 +178,12 @@ impl Motion {
     }
 
     /// Notes what makes a decay doubtful, and forgets it at a new start.
-    fn trust_or_not(&mut self, cycle: &Cycle) {
+    fn trust_or_not(&mut self, cycle: &Cycle, records: &Records) {
         let Some(before) = self.cycles.last() else { return };
         let growth = cycle.half.amplitude_rad() / before.half.amplitude_rad();
         let steady = before.steady && cycle.steady;
-        if growth > 1.06 && !steady {
+        let jolted = records.carriage.steady_for_s(before.half.start.time_s) < JOLT_S;
+        if growth > 1.06 && (!steady || jolted) {
             self.distrust = Some("the roll was still disturbed by the change of speed");
         } else if self.distrust == Some(TOUCHED)
             && self.cycles.len() > 1
@@ -186,7 +191,7 @@ impl Motion {
         {
             // A hand that stays would have taken more: this was a blow against the roll.
             self.distrust = None;
-        } else if steady && self.cycles.len() > 1 && growth > NEW_START
+        } else if steady && !jolted && self.cycles.len() > 1 && growth > NEW_START
             || cycle.steady && cycle.half.is_from_hold()
         {
             self.distrust = None;
@@ -197,8 +202,10 @@ impl Motion {
         self.state = state;
         self.before.clear();
         self.before.extend(self.cycles.drain(..start));
-        let start_s = self.cycles[0].half.start.time_s;
-        self.flush(start_s, closer);
+        self.stirred |= start > 0;
+        if state == State::Forced {
+            self.flush(self.cycles[0].half.start.time_s, closer);
+        }
     }
 
     /// Index of the first of the last half cycles that fall one after the other without a drive.
@@ -308,10 +315,19 @@ impl Motion {
                 .max(self.rod_left_s.take().unwrap_or(f64::NEG_INFINITY)),
             RunKind::Forced => first.half.start.time_s,
         };
-        self.flush(start_s, closer);
         let Usable { end, end_s, left_s, why } =
             usable_end::find(closer.records, kind, &cycles, (end, end_s));
-        let stretch = Stretch { kind, start_s, end_s, end, cycles: &cycles };
+        let touched = matches!(end, RunEnd::Caught | RunEnd::ReStruck);
+        let between_touches = self.stirred && touched && !first.half.is_from_hold();
+        let stretch = Stretch { kind, start_s, end_s, end, cycles: &cycles, between_touches };
+        self.stirred = true;
+        if between_touches && self.unused.is_some() && stretch.is_too_short() {
+            // Irregular roll is one rejection, not a hundred.
+            self.state = State::Searching;
+            self.unused.iter_mut().for_each(|u| cycles.iter().for_each(|c| u.extend(c)));
+            return;
+        }
+        self.flush(start_s, closer);
         let event = stretch.close(closer.records, closer.limits);
         closer.events.push(event);
         self.rod_on = kind == RunKind::Forced;
