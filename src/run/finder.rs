@@ -178,3 +178,84 @@ impl RunFinder {
         self.records.forget_before(from_s);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::RunKind;
+    use super::*;
+
+    const LIMITS: Limits = Limits {
+        carriage_max_speed_m_s: None,
+        declared_speed_m_s: None,
+        length_pp_m: 2.5,
+        gravity_m_s2: 9.81,
+    };
+
+    /// Feeds roll and force at 20 Hz; gives the events and the most samples kept of a channel.
+    fn feed(duration_s: f64, roll_and_force: impl Fn(f64) -> (f64, f64)) -> (Vec<Event>, usize) {
+        let mut finder = RunFinder::new(LIMITS);
+        let (mut events, mut n_most) = (Vec::new(), 0);
+        for k in 0..(duration_s * 20.0) as usize {
+            let time_s = k as f64 * 0.05;
+            let (roll, force) = roll_and_force(time_s);
+            for (quantity, value) in [(Quantity::Roll, roll), (Quantity::Force, force)] {
+                finder.push(&Sample { quantity, time_s, value }, &mut events);
+            }
+            n_most = n_most.max(finder.records.n_samples());
+        }
+        finder.finish(&mut events);
+        (events, n_most)
+    }
+
+    #[test]
+    fn ten_hours_of_rest_are_forgotten() {
+        // Two sines that beat stand for the noise, and the zero drifts by a degree.
+        let (events, n_most) = feed(36_000.0, |t| {
+            (1e-4 * ((97.0 * t).sin() + (311.0 * t).sin()) + 5e-7 * t, 0.01 * (53.0 * t).sin())
+        });
+        assert!(events.is_empty(), "{events:?}");
+        // Twenty seconds at 20 Hz, and what comes in until the next thousand pushes.
+        assert!(n_most < 1500, "{n_most} samples");
+    }
+
+    #[test]
+    fn forced_rolling_without_end_is_closed_at_the_longest_run() {
+        let (events, n_most) =
+            feed(7200.0, |t| (0.1 * (3.0 * t).sin(), 4.0 * (3.0 * t + 0.5).sin()));
+        let runs: Vec<_> = events
+            .iter()
+            .filter_map(|event| match event {
+                Event::Run(run) => Some((run.kind, run.end, run.end_s - run.start_s)),
+                Event::Rejected(_) => None,
+            })
+            .collect();
+        assert_eq!(runs.len(), 4, "{runs:?}");
+        for (kind, end, length_s) in &runs[..3] {
+            assert_eq!((*kind, *end), (RunKind::Forced, RunEnd::TooLong));
+            assert!((1790.0..1810.0).contains(length_s), "{length_s} s");
+        }
+        // Half an hour at 20 Hz.
+        assert!(n_most < 38_000, "{n_most} samples");
+    }
+
+    #[test]
+    fn a_run_is_told_as_soon_as_its_end_is_known() {
+        let mut finder = RunFinder::new(LIMITS);
+        let mut events = Vec::new();
+        let told_s = (0..2000).map(|k| f64::from(k) * 0.02).find(|&time_s| {
+            let free_s = time_s - 5.0;
+            let value = match free_s {
+                ..0.0 => 0.2,
+                0.0..8.0 => 0.2 * (-0.2 * free_s).exp() * (6.0 * free_s).cos(),
+                _ => 0.0,
+            };
+            let ripple = 2e-4 * (97.0 * time_s).sin();
+            let sample = Sample { quantity: Quantity::Roll, time_s, value: value + ripple };
+            finder.push(&sample, &mut events);
+            !events.is_empty()
+        });
+        assert!(matches!(&events[0], Event::Run(run) if run.end == RunEnd::Caught), "{events:?}");
+        // The model is still from 13 s on, which takes two seconds to tell.
+        assert!(told_s.is_some_and(|s| s < 15.5), "{told_s:?}");
+    }
+}
