@@ -73,7 +73,7 @@ impl Scene {
 
     /// Plays the actions and gives the samples with their truth.
     pub(crate) fn play(&self, actions: &str) -> SimulatedPass {
-        let scenario = Scenario::parse(&self.text(actions), "scene.toml").unwrap();
+        let scenario = Scenario::parse(&self.text(actions), "scene.toml").expect("a valid scene");
         simulate_pass(&scenario, 0, self.seed)
     }
 

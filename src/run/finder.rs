@@ -18,8 +18,8 @@ use super::records::Records;
 
 /// Samples kept per channel: beyond it a run is closed, so that memory stays within some 100 MB.
 const N_SAMPLES_MAX: usize = 2_000_000;
-/// Longest time [s] that the roll waits for a speed channel that lags behind or has stopped.
-const SPEED_WAIT_S: f64 = 4.0;
+/// Longest time [s] that the roll waits for a channel that lags behind or has stopped.
+const WAIT_MAX_S: f64 = 4.0;
 /// Share of a half period up to which a hole in the roll does not end a run.
 const HOLE_SHARE: f64 = 0.25;
 
@@ -121,20 +121,18 @@ impl RunFinder {
         }
     }
 
-    /// Passes on what the roll did as soon as it is known how the carriage moved then.
+    /// Passes on what the roll did as soon as it is known how carriage and rod moved then.
     fn settle(&mut self, events: &mut Vec<Event>) {
         while let Some(swing) = self.waiting.front() {
             let at_s = match swing {
                 Swing::Half(half) => half.end.time_s,
                 Swing::Quiet(at_s) => *at_s,
             };
-            let known = match self.records.carriage.track.last_s() {
-                None => true,
-                Some(speed_s) => {
-                    let roll_s = self.records.roll.last_s().unwrap_or(at_s);
-                    speed_s >= at_s + KNOWN_AFTER_S || roll_s >= at_s + SPEED_WAIT_S
-                }
-            };
+            let waited_s = self.records.roll.last_s().unwrap_or(at_s) - at_s;
+            let behind = |last_s: Option<f64>, needed_s: f64| last_s.is_some_and(|s| s < needed_s);
+            let known = waited_s >= WAIT_MAX_S
+                || !behind(self.records.carriage.track.last_s(), at_s + KNOWN_AFTER_S)
+                    && !behind(self.records.drive.track.last_s(), at_s);
             if !known {
                 return;
             }

@@ -6,6 +6,7 @@ use super::bins::Bin;
 
 /// What noise and quantum do to the roll.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[expect(clippy::struct_field_names, reason = "the unit is the same")]
 pub(super) struct Ripple {
     /// Standard deviation of a smoothed bin [rad].
     pub(super) sd_rad: f64,
