@@ -251,3 +251,10 @@ fn two_half_cycles_are_too_few() {
 fn a_decay_with_the_load_cell_hanging_free_is_no_forced_run() {
     ON_THE_ROD.check(&released(10.0, 20.0, ""));
 }
+
+#[test]
+fn bilge_keels_at_speed_leave_two_periods() {
+    let keels = Scene { model: (6.136, 3.2, 0.67), ..AT_REST };
+    keels.check(&released(20.0, 8.0, ""));
+    keels.check(&released(14.0, 8.0, ""));
+}
