@@ -26,6 +26,7 @@ const N_STEADY: usize = 16;
 
 /// A stretch of steady speed, rest included.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::struct_field_names, reason = "the units end alike")]
 struct Steady {
     start_s: f64,
     end_s: Option<f64>,
@@ -90,6 +91,15 @@ impl CarriagePass {
             Some(_) => Passage::Steady,
             None => Passage::Changing,
         }
+    }
+
+    /// How long the speed had been steady at `time_s` [s]; zero when it was not.
+    pub(super) fn steady_for_s(&self, time_s: f64) -> f64 {
+        if self.track.last_s().is_none() {
+            return f64::INFINITY;
+        }
+        let holds = |s: &&Steady| s.start_s <= time_s && s.end_s.is_none_or(|e| time_s < e);
+        self.steady.iter().find(holds).map_or(0.0, |s| time_s - s.start_s)
     }
 
     /// Whether the carriage was faster in the steady stretch before the one at `time_s`.
@@ -185,6 +195,21 @@ mod tests {
         let Passage::Ends(end_s) = carriage.passage(6.0, 21.0) else { panic!("braking is missed") };
         assert!((end_s - 20.0).abs() < 0.1, "{end_s} s");
         assert_eq!(carriage.passage(22.3, 24.0), Passage::Steady);
+    }
+
+    #[test]
+    fn a_speed_that_settles_and_wobbles_is_steady() {
+        let mut carriage = CarriagePass::default();
+        for k in 0..2000 {
+            let t = f64::from(k) * 0.02;
+            let settling = 1.0 - 0.1 * (-0.5 * (t - 6.0)).exp();
+            let wobble = 0.02 * (1.5 * t).sin();
+            let speed = if t < 4.0 { 0.0 } else { (0.45 * (t - 4.0)).min(settling + wobble) };
+            carriage.push(t, speed);
+        }
+        // The last 10 % come with a time constant of 2 s; the wobble of 2 % stays.
+        assert_eq!(carriage.passage(9.0, 39.0), Passage::Steady);
+        assert_eq!(carriage.passage(5.0, 5.5), Passage::Changing);
     }
 
     #[test]
