@@ -10,7 +10,7 @@ use crate::inverse::estimate::Estimate;
 use crate::results::Results;
 use crate::run::RunKind;
 
-/// Tables of the catalogue; units are in the column names, `lo95` and `hi95` bound the 95 % interval.
+/// Tables of the catalogue; units are in the column names, the 95 % interval is `lo95` to `hi95`.
 const TABLES: &str = "
 CREATE TABLE recording (
     name TEXT PRIMARY KEY, condition TEXT NOT NULL, declared_speed_m_s REAL, notes TEXT NOT NULL
@@ -29,7 +29,8 @@ CREATE TABLE rejection (
     recording TEXT NOT NULL, start_s REAL, end_s REAL, reason TEXT NOT NULL
 ) STRICT;
 CREATE TABLE equivalent_damping (
-    run TEXT NOT NULL REFERENCES run (id), amplitude_deg REAL NOT NULL, extrapolated INTEGER NOT NULL,
+    run TEXT NOT NULL REFERENCES run (id),
+    amplitude_deg REAL NOT NULL, extrapolated INTEGER NOT NULL,
     fitted_per_s REAL, fitted_sd REAL, fitted_lo95 REAL, fitted_hi95 REAL,
     local_per_s REAL, local_sd REAL, local_lo95 REAL, local_hi95 REAL
 ) STRICT;
@@ -50,7 +51,7 @@ pub enum CatalogueError {
     Database {
         /// The catalogue.
         path: PathBuf,
-        /// What SQLite said.
+        /// What the database said.
         source: rusqlite::Error,
     },
     /// The disk refused the file.

@@ -1,4 +1,5 @@
 //! Stories.
+#![expect(clippy::print_stdout, reason = "a failing story shows what it saw")]
 
 mod architecture;
 mod bad_input;
@@ -8,6 +9,21 @@ mod run_finding_kvlcc2;
 mod sampler_cases;
 mod sampler_draws_the_exact_posterior;
 mod sampler_says_what_it_did;
+mod the_exact_posterior_is_the_dense_one;
+mod the_simulated_tank_keeps_its_script;
+mod the_simulated_tank_writes_campaigns;
+mod json_schema;
+mod synthetic_results;
+mod synthetic_roll;
+mod the_json_contract_holds;
+mod the_report_is_complete_and_self_contained;
+mod the_tables_and_the_catalogue_agree_with_the_results;
+mod run_finding_decays;
+mod run_finding_forced;
+mod run_finding_kvlcc2;
+mod run_finding_scene;
+mod the_simulated_tank_keeps_its_script;
+mod the_simulated_tank_writes_campaigns;
 mod the_command_line;
 mod the_simulated_tank_keeps_its_script;
 mod the_simulated_tank_writes_campaigns;

@@ -14,7 +14,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Every quantity, in the order in which channels are listed everywhere.
+    /// Every quantity, in the order in which channels are listed everywhere and which `Ord` gives.
     pub const ALL: [Self; 4] = [Self::Roll, Self::Force, Self::Moment, Self::Speed];
 
     /// Name in campaign files, topics and messages.
@@ -47,4 +47,15 @@ pub struct Sample {
     pub time_s: f64,
     /// Value in the SI unit of the quantity.
     pub value: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_of_quantities_is_whole_and_in_their_order() {
+        assert!(Quantity::ALL.is_sorted());
+        assert!(Quantity::ALL.iter().enumerate().all(|(at, quantity)| *quantity as usize == at));
+    }
 }

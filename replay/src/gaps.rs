@@ -9,8 +9,9 @@ use crate::note::Note;
 const HOLE_INTERVALS: f64 = 5.0;
 /// Intervals needed before the typical one is trusted.
 const TRUSTED_INTERVALS: u64 = 20;
-/// Step by which the typical interval follows the intervals, as a factor.
-const STEP: f64 = 1.05;
+/// Factor by which the typical interval follows the intervals, at first and once it is trusted; the
+/// first intervals may be far from typical, as when a program starts with a burst.
+const STEPS: [f64; 2] = [1.5, 1.05];
 
 /// Watches one channel's intervals and counts the holes.
 #[derive(Debug, Clone)]
@@ -49,7 +50,8 @@ impl Gaps {
                 self.hole(interval_s);
             }
             // Steps of equal size either way settle on the median, which holes cannot pull away.
-            self.typical_s *= if interval_s > self.typical_s { STEP } else { STEP.recip() };
+            let step = STEPS[usize::from(self.samples > TRUSTED_INTERVALS)];
+            self.typical_s *= if interval_s > self.typical_s { step } else { step.recip() };
         }
         self.samples += 1;
         self.last_s = sample.time_s;

@@ -2,7 +2,7 @@
 //!
 //! Reading, from the outside in: [`Player`] merges streams in time order; a stream is one file on
 //! one time base, a delimited table or a topic of an MCAP file. Writing: [`Recorder`], and
-//! [`import`] from the one to the other.
+//! [`import()`] from the one to the other.
 
 mod columns;
 mod csv_file;

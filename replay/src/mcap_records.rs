@@ -93,7 +93,7 @@ impl Records {
         Ok(there)
     }
 
-    /// The next record's opcode; its body is in [`Records::body`] unless its kind is of no use here.
+    /// The next record's opcode, records of no use here passed over; see [`Records::body`].
     pub(crate) fn next(&mut self) -> Result<Option<u8>, ReplayError> {
         loop {
             if self.chunk.is_some() {

@@ -137,8 +137,9 @@ proptest! {
         recorder.finish().expect("it is completed");
         let played = play_whole(&target, &Columns::default());
         let bits = |samples: &[Sample]| -> Vec<_> {
-            let bits = |sample: &Sample| (sample.quantity, sample.time_s.to_bits(), sample.value.to_bits());
-            samples.iter().map(bits).collect()
+            let numbers = samples.iter().map(|sample| (sample.time_s, sample.value));
+            let bits = numbers.map(|(time_s, value)| (time_s.to_bits(), value.to_bits()));
+            samples.iter().map(|sample| sample.quantity).zip(bits).collect()
         };
         prop_assert_eq!(bits(&played.samples), bits(&samples));
     }

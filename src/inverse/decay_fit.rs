@@ -233,7 +233,7 @@ impl Fit<'_> {
         let probability_of_misfit = 1.0 - 1.0 / (1.0 + walking);
         let noise_variance = lawful.triangle.at(n, n).powi(2) / (lawful.n_samples - n) as f64;
         let residual_rad = columns.pop().expect("the residual is the last column");
-        let inverse = self.inverse_triangle(&lawful);
+        let inverse = lawful.triangle.inverse_columns(n);
         let mut covariance = [[0.0; N_UNKNOWNS]; N_UNKNOWNS];
         let scores = if probability_of_misfit > 0.5 {
             correlated_scores(&columns, &residual_rad)
@@ -242,7 +242,7 @@ impl Fit<'_> {
         };
         let positions: Vec<usize> = self.active().collect();
         // (R'R)^-1 s^2 where the residual is noise, (R'R)^-1 S (R'R)^-1 where it is not.
-        let bread = product_with_transpose(&inverse);
+        let bread = sum_of_squares(&inverse);
         for (i, &p) in positions.iter().enumerate() {
             for (j, &q) in positions.iter().enumerate() {
                 let white = noise_variance * bread[i][j];
@@ -283,27 +283,13 @@ impl Fit<'_> {
             - log_flat
             + prior
     }
-
-    /// Inverse of the triangle of the active unknowns, by back substitution.
-    fn inverse_triangle(&self, filtered: &Filtered) -> Vec<Vec<f64>> {
-        let n = self.n_active();
-        let triangle = &filtered.triangle;
-        let mut inverse = vec![vec![0.0; n]; n];
-        for column in 0..n {
-            for i in (0..=column).rev() {
-                let unit = f64::from(u8::from(i == column));
-                let known: f64 =
-                    (i + 1..=column).map(|j| triangle.at(i, j) * inverse[j][column]).sum();
-                inverse[i][column] = (unit - known) / triangle.at(i, i);
-            }
-        }
-        inverse
-    }
 }
 
-fn product_with_transpose(a: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum();
-    a.iter().map(|row| a.iter().map(|other| dot(row, other)).collect()).collect()
+/// The sum of `c c'` over the columns.
+fn sum_of_squares(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let n = columns.len();
+    let entry = |i: usize, j: usize| columns.iter().map(|c| c[i] * c[j]).sum();
+    (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
 
 /// What correlation between samples adds to the covariance of the scores `J_t r_t`, with Bartlett's

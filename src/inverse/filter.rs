@@ -181,6 +181,19 @@ impl Triangle {
         self.size
     }
 
+    /// Columns of the inverse of the leading `count` by `count` triangle.
+    pub fn inverse_columns(&self, count: usize) -> Vec<Vec<f64>> {
+        let mut columns = vec![vec![0.0; count]; count];
+        for (c, column) in columns.iter_mut().enumerate() {
+            for i in (0..=c).rev() {
+                let unit = f64::from(u8::from(i == c));
+                let known: f64 = (i + 1..=c).map(|j| self.at(i, j) * column[j]).sum();
+                column[i] = (unit - known) / self.at(i, i);
+            }
+        }
+        columns
+    }
+
     /// Adds a row, which is used up.
     pub fn add(&mut self, row: &mut [f64]) {
         for i in 0..self.size {

@@ -2,7 +2,7 @@
 
 use super::estimate::Estimate;
 use super::filter::Triangle;
-use super::harmonic::FourierSeries;
+use super::harmonic::{FourierSeries, Motion};
 use super::smoother::explained_by;
 use crate::roll::exciting_moment::Exciter;
 use crate::run::Run;
@@ -63,7 +63,7 @@ impl SteadyResponse {
         let frequency = roll.frequency_rad_s.mean;
         let moment = FourierSeries::fit(&moment_time_s, &moment_n_m, frequency)?;
         let balance = Balance::new(&roll, &moment_time_s, &moment_n_m, restoring_n_m_per_rad);
-        let response = balance.response(roll, moment, restoring_n_m_per_rad);
+        let response = balance.response(roll, moment);
         if response.work_damping_n_m_s.hi95 < 0.0 {
             return Err(format!(
                 "the rod takes {:.3} N m s of damping out of the model, so the force or the roll \
@@ -92,6 +92,10 @@ impl SteadyResponse {
 }
 
 /// Least squares of `M - K phi = I phi'' + B1 phi' + B3 phi'^3 + M0` on the moment samples.
+///
+/// The motion is itself a fit, so the noise of each of its harmonics turns into a moment that was
+/// never there; what that does to the unknowns is added to their covariance. Above resonance the
+/// third harmonic carries most of it, which is why one amplitude parts `B1` from `B3` so badly.
 struct Balance {
     values: Vec<f64>,
     covariance: [[f64; N]; N],
@@ -103,77 +107,88 @@ impl Balance {
         let mut triangle = Triangle::new(N + 1);
         for (&t, &moment) in time_s.iter().zip(moment_n_m) {
             let motion = roll.at(t);
-            triangle.add(&mut [
-                motion.acceleration,
-                motion.rate,
-                motion.rate.powi(3),
-                1.0,
-                moment - restoring * (motion.value - roll.mean),
-            ]);
+            let left = moment - restoring * (motion.value - roll.mean);
+            let [acceleration, rate, cubed, one] = row(&motion);
+            triangle.add(&mut [acceleration, rate, cubed, one, left]);
         }
         let values: Vec<f64> = explained_by(&triangle, N, N).iter().map(|w| -w).collect();
         let freedom = (time_s.len() - N) as f64;
         let noise_n_m = triangle.at(N, N).abs() / freedom.sqrt();
-        let mut inverse = [[0.0; N]; N];
-        for column in 0..N {
-            for i in (0..=column).rev() {
-                let unit = f64::from(u8::from(i == column));
-                let known: f64 =
-                    (i + 1..=column).map(|j| triangle.at(i, j) * inverse[j][column]).sum();
-                inverse[i][column] = (unit - known) / triangle.at(i, i);
-            }
+        let mut covariance = [[0.0; N]; N];
+        for column in triangle.inverse_columns(N) {
+            add_square(&mut covariance, &column, noise_n_m);
         }
-        let covariance = std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
-                noise_n_m.powi(2)
-                    * inverse[i].iter().zip(&inverse[j]).map(|(a, b)| a * b).sum::<f64>()
-            })
-        });
+        for shift in Self::harmonic_shifts(roll, time_s, &values, restoring) {
+            add_square(&mut covariance, &shift, roll.coefficient_sd);
+        }
         Self { values, covariance, noise_n_m }
     }
 
-    fn response(
-        &self,
-        roll: FourierSeries,
-        moment: FourierSeries,
+    /// Shift of the unknowns by a unit error in each coefficient of the roll's harmonics.
+    fn harmonic_shifts(
+        roll: &FourierSeries,
+        time_s: &[f64],
+        values: &[f64],
         restoring: f64,
-    ) -> SteadyResponse {
+    ) -> Vec<Vec<f64>> {
+        let units = roll.units();
+        let mut triangle = Triangle::new(N + units.len());
+        for &t in time_s {
+            let motion = roll.at(t);
+            let slope = values[1] + 3.0 * values[2] * motion.rate.powi(2);
+            let moment = |unit: &FourierSeries| {
+                let error = unit.at(t);
+                restoring * error.value + values[0] * error.acceleration + slope * error.rate
+            };
+            let mut line: Vec<f64> =
+                row(&motion).into_iter().chain(units.iter().map(moment)).collect();
+            triangle.add(&mut line);
+        }
+        (0..units.len()).map(|u| explained_by(&triangle, N, N + u)).collect()
+    }
+
+    fn response(&self, roll: FourierSeries, moment: FourierSeries) -> SteadyResponse {
         let w = roll.frequency_rad_s.mean;
-        let [inertia, linear, cubic] = [self.values[0], self.values[1], self.values[2]];
-        // Noise of the roll turns its fundamental in phase and size; the dynamic stiffness makes an
-        // apparent damping and inertia of that.
-        let turn = roll.coefficient_sd / roll.amplitude();
-        let stiffness = restoring - inertia * w * w;
-        let equivalent = linear + 0.75 * (w * roll.amplitude()).powi(2) * cubic;
-        let inertia_sd =
-            self.covariance[0][0].sqrt().hypot(stiffness.hypot(equivalent * w) * turn / (w * w));
-        let from_roll = (stiffness.hypot(equivalent * w) * turn / w).powi(2);
-        let (b1, b3) = (linear / inertia, cubic / inertia);
-        let relative = (inertia_sd / inertia).powi(2);
         let c = &self.covariance;
-        let square = inertia * inertia;
-        let damping_covariance = [
-            [
-                (c[1][1] + from_roll) / square + b1 * b1 * relative,
-                c[1][2] / square + b1 * b3 * relative,
-            ],
-            [c[1][2] / square + b1 * b3 * relative, c[2][2] / square + b3 * b3 * relative],
-        ];
+        let [inertia, linear, cubic] = [self.values[0], self.values[1], self.values[2]];
+        let (b1, b3) = (linear / inertia, cubic / inertia);
+        // Per unit inertia: b = B / I, with the inertia's own error and its share in common.
+        let by = |b: f64, row: usize, other: f64, column: usize| {
+            (c[row][column] - b * c[0][column] - other * c[0][row] + b * other * c[0][0])
+                / (inertia * inertia)
+        };
+        let damping_covariance =
+            [[by(b1, 1, b1, 1), by(b1, 1, b3, 2)], [by(b3, 2, b1, 1), by(b3, 2, b3, 2)]];
         // Only the fundamental of the moment does work on a sinusoidal roll.
         let (cos, sin) = (roll.pairs[0].0 * w, roll.pairs[0].1 * w);
         let power = 0.5 * (moment.pairs[0].0 * sin - moment.pairs[0].1 * cos);
         let rate_square = 0.5 * (cos * cos + sin * sin);
-        let work_sd = (moment.coefficient_sd / (w * roll.amplitude())).hypot(from_roll.sqrt());
+        let cubic_share = 0.75 * (w * roll.amplitude()).powi(2);
+        let work_variance =
+            c[1][1] + 2.0 * cubic_share * c[1][2] + cubic_share * cubic_share * c[2][2];
         SteadyResponse {
             roll,
             moment_time_s: Vec::new(),
             moment_n_m: Vec::new(),
             moment,
-            inertia_kg_m2: Estimate::normal(inertia, inertia_sd),
+            inertia_kg_m2: Estimate::normal(inertia, c[0][0].sqrt()),
             damping: [b1, b3],
             damping_covariance,
-            work_damping_n_m_s: Estimate::normal(power / rate_square, work_sd),
+            work_damping_n_m_s: Estimate::normal(power / rate_square, work_variance.sqrt()),
             moment_noise_n_m: self.noise_n_m,
+        }
+    }
+}
+
+/// What the unknowns multiply.
+fn row(motion: &Motion) -> [f64; N] {
+    [motion.acceleration, motion.rate, motion.rate.powi(3), 1.0]
+}
+
+fn add_square(covariance: &mut [[f64; N]; N], vector: &[f64], sd: f64) {
+    for (row, a) in covariance.iter_mut().zip(vector) {
+        for (entry, b) in row.iter_mut().zip(vector) {
+            *entry += sd * sd * a * b;
         }
     }
 }

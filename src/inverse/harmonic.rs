@@ -63,6 +63,17 @@ impl FourierSeries {
         self.pairs[0].0.hypot(self.pairs[0].1)
     }
 
+    /// Unit series of the same frequency, one for each cosine and sine coefficient.
+    pub fn units(&self) -> Vec<Self> {
+        let none = Self { mean: 0.0, pairs: [(0.0, 0.0); N_HARMONICS], ..*self };
+        let mut units = vec![none; 2 * N_HARMONICS];
+        for (h, pair) in units.chunks_exact_mut(2).enumerate() {
+            pair[0].pairs[h].0 = 1.0;
+            pair[1].pairs[h].1 = 1.0;
+        }
+        units
+    }
+
     /// The series and its derivatives at `time_s` [s].
     pub fn at(&self, time_s: f64) -> Motion {
         let mut motion = Motion { value: self.mean, rate: 0.0, acceleration: 0.0 };

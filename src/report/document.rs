@@ -8,6 +8,9 @@ use crate::inverse::estimate::Estimate;
 /// The style sheet, which is part of every page.
 const STYLE: &str = include_str!("page.css");
 
+/// Rows of a table, each of two lines, that fit on an A4 page with its heading.
+const ROWS_ON_A_PAGE: usize = 24;
+
 /// A whole page; it needs nothing beside itself.
 pub(super) fn page(title: &str, body: &Markup) -> Markup {
     html! {
@@ -41,7 +44,8 @@ pub(super) type Column<'a> = (&'a str, &'a str);
 /// A table with a caption, one markup per row holding its cells.
 pub(super) fn table(id: &str, caption: &str, columns: &[Column], rows: &[Markup]) -> Markup {
     html! {
-        div.table {
+        // A table that fits on a page is not cut; the head of a longer one is printed again.
+        div.table.whole[rows.len() <= ROWS_ON_A_PAGE] {
             table id=(id) {
                 caption { (notation::html(caption)) }
                 thead { tr {
@@ -99,15 +103,13 @@ pub(super) fn run_file_name(id: &str) -> Result<String, ReportError> {
 
 /// The same name in a link, every byte outside the unreserved set of RFC 3986 written as `%XX`.
 pub(super) fn run_link(id: &str) -> String {
-    let mut link = String::from("run-");
-    for byte in id.bytes() {
-        if byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'.' | b'_' | b'~') {
-            link.push(char::from(byte));
-        } else {
-            link.push_str(&format!("%{byte:02X}"));
+    let escaped = id.bytes().map(|byte| match byte {
+        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' => {
+            char::from(byte).to_string()
         }
-    }
-    link + ".html"
+        _ => format!("%{byte:02X}"),
+    });
+    format!("run-{}.html", escaped.collect::<String>())
 }
 
 #[cfg(test)]

@@ -51,28 +51,30 @@ const SYMBOLS: &[Symbol] = &[
 ];
 
 const CONVENTIONS: &[&str] = &[
-    "Roll is positive starboard down; a positive exciting moment rolls the model to positive roll. \
-     The damping moment opposes the rate, so U and φ′ have opposite signs.",
-    "Equation of motion, per unit inertia: φ″ + B(φ′)/(I+ΔI) + ω_{n}² φ = M/(I+ΔI). All b are per \
-     unit inertia I+ΔI; all B are moments, b times I+ΔI.",
-    "I+ΔI is K/ω_{n}² in a decay and (K A₁ − M_{a} cos ε)/(ω² A₁), equation (4.5), in a forced run. \
-     Hull particulars are taken as exact: an error of 2 % in GM is one of 2 % in every B and in B̂₄₄, \
-     and none in b.",
-    "Equivalent damping is by equal energy per cycle: b_{eq}(A) = b₁ + ¾ (ω_{n} A)² b₃. It is the value \
-     to compare between runs; b₁ and b₃ alone trade against each other, and their correlation is given.",
-    "The law value comes from b₁ and b₃ of the whole run; the local value from the energy balance of the \
-     half cycles near that amplitude, without a law.",
-    "Non-dimensional: B̂₄₄ = B_{eq}/(ρ ∇ B²) √(B/(2g)), ITTC 7.5-02-07-04.5, with B the beam in the \
-     second and third place.",
+    "Roll is positive starboard down; a positive exciting moment rolls the model to positive \
+     roll. The damping moment opposes the rate, so U and φ′ have opposite signs.",
+    "Equation of motion, per unit inertia: φ″ + B(φ′)/(I+ΔI) + ω_{n}² φ = M/(I+ΔI). All b are \
+     per unit inertia I+ΔI; all B are moments, b times I+ΔI.",
+    "I+ΔI is K/ω_{n}² in a decay and (K A₁ − M_{a} cos ε)/(ω² A₁), equation (4.5), in a forced \
+     run. Hull particulars are taken as exact: an error of 2 % in GM is one of 2 % in every B \
+     and in B̂₄₄, and none in b.",
+    "Equivalent damping is by equal energy per cycle: b_{eq}(A) = b₁ + ¾ (ω_{n} A)² b₃. It is \
+     the value to compare between runs; b₁ and b₃ alone trade against each other, and their \
+     correlation is given.",
+    "The law value comes from b₁ and b₃ of the whole run; the local value from the energy \
+     balance of the half cycles near that amplitude, without a law.",
+    "Non-dimensional: B̂₄₄ = B_{eq}/(ρ ∇ B²) √(B/(2g)), ITTC 7.5-02-07-04.5, with B the beam in \
+     the second and third place.",
     "Damping ratio: ζ = b_{eq}/(2 ω_{n}).",
-    "Half-cycle convention: Δφ/φ_{m} = π b_{eq}/(2 ω_{n}) per HALF cycle, from one peak to the next on \
-     the other side; so Δφ = a φ_{m} + c φ_{m}³ with a = (π/2) b₁/ω_{n} and c = (3π/8) ω_{n} b₃, φ in rad.",
-    "Full-cycle convention (p–q of MARIN): from one peak to the next on the same side, twice the \
-     half-cycle value, so p = 2a. The fitted law has a cubic term where p–q has a quadratic one; \
-     no q is quoted.",
+    "Half-cycle convention: Δφ/φ_{m} = π b_{eq}/(2 ω_{n}) per HALF cycle, from one peak to the \
+     next on the other side; so Δφ = a φ_{m} + c φ_{m}³ with a = (π/2) b₁/ω_{n} and c = (3π/8) \
+     ω_{n} b₃, φ in rad.",
+    "Full-cycle convention (p–q of MARIN): from one peak to the next on the same side, twice \
+     the half-cycle value, so p = 2a. The fitted law has a cubic term where p–q has a quadratic \
+     one; no q is quoted.",
     "Froude number is on L_{pp}: Fr = V/√(g L_{pp}), V the mean carriage speed over the run.",
-    "Posterior means are printed with central 95 % credible intervals, mean [low, high], rounded to \
-     two significant digits of the standard deviation.",
+    "Posterior means are printed with central 95 % credible intervals, mean [low, high], \
+     rounded to two significant digits of the standard deviation.",
 ];
 
 /// The conventions as a section.

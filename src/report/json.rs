@@ -19,6 +19,10 @@ pub const IDENTIFICATION_SCHEMA: &str = include_str!("identification.schema.json
 ///
 /// Numbers are written with as many digits as they need to be read back exactly; a number that is
 /// not finite is `null`.
+///
+/// # Panics
+///
+/// Never: every key of the document is a string, which is all that can fail.
 pub fn identification_json(campaign: &Campaign, results: &Results) -> String {
     let document = Document {
         schema: SCHEMA_NAME,

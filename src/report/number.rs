@@ -15,6 +15,11 @@ fn last_place(sd: f64) -> i32 {
     if rounded >= 100.0 { place + 1 } else { place }
 }
 
+/// The power of ten of the first digit of a value; very low for zero, which has none.
+fn first_place(value: f64) -> i32 {
+    if value == 0.0 { i32::MIN / 2 } else { value.abs().log10().floor() as i32 }
+}
+
 /// `value` rounded to the given power of ten.
 fn rounded(value: f64, place: i32) -> String {
     let decimals = usize::try_from(-place).unwrap_or(0).min(12);
@@ -38,7 +43,7 @@ pub(crate) fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
-    rounded(value, value.abs().log10().floor() as i32 + 1 - digits)
+    rounded(value, first_place(value) + 1 - digits)
 }
 
 /// `value` with this many decimals.
@@ -67,13 +72,28 @@ pub(crate) fn estimate(estimate: &Estimate) -> String {
     format!("{mean} {interval}")
 }
 
+/// The same with at most `digits` significant digits of the mean, for tables of limited width.
+pub(crate) fn estimate_within(estimate: &Estimate, digits: i32) -> String {
+    let (mean, interval) = parts_within(estimate, digits);
+    format!("{mean} {interval}")
+}
+
+/// The mean alone, as [`estimate_within`] writes it.
+pub(crate) fn mean_within(estimate: &Estimate, digits: i32) -> String {
+    parts_within(estimate, digits).0
+}
+
 fn parts(estimate: &Estimate) -> (String, String) {
+    parts_within(estimate, 12)
+}
+
+fn parts_within(estimate: &Estimate, digits: i32) -> (String, String) {
     let known = [estimate.mean, estimate.lo95, estimate.hi95];
     if !known.iter().all(|value| value.is_finite()) {
         return (significant(estimate.mean, 4), format!("[{UNKNOWN}, {UNKNOWN}]"));
     }
     if estimate.sd.is_finite() && estimate.sd > 0.0 {
-        let place = last_place(estimate.sd);
+        let place = last_place(estimate.sd).max(first_place(estimate.mean) + 1 - digits);
         let [mean, lo, hi] = known.map(|value| rounded(value, place));
         (mean, format!("[{lo}, {hi}]"))
     } else {

@@ -27,8 +27,6 @@ pub(super) struct Stretch<'a> {
     pub(super) end: RunEnd,
     /// Its half cycles, those after the end included.
     pub(super) cycles: &'a [Cycle],
-    /// Why the whole stretch cannot be trusted, such as a roll that speeding up left behind.
-    pub(super) distrust: Option<&'static str>,
 }
 
 impl Stretch<'_> {
@@ -50,9 +48,6 @@ impl Stretch<'_> {
     }
 
     fn refusal(&self, used: &[Cycle]) -> Option<String> {
-        if let Some(why) = self.distrust {
-            return Some(why.to_owned());
-        }
         let needed = match self.kind {
             RunKind::Decay => N_HALF_CYCLES_MIN,
             RunKind::Forced => forced::N_SETTLED,

@@ -11,7 +11,7 @@ pub(super) struct Bin {
 
 /// A bin is full when the next sample would come this long [s] after its first; a 20 Hz channel
 /// with some jitter keeps each sample, and a roll period of 0.5 s keeps ten bins.
-const WIDTH_S: f64 = 0.045;
+pub(super) const WIDTH_S: f64 = 0.045;
 
 /// Collects samples until a bin is full.
 #[derive(Debug, Default)]

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::bins::Bin;
-use super::noise::Noise;
+use super::noise::BinNoise;
 use super::noise::Quantum;
 use super::track::Track;
 
@@ -29,6 +29,7 @@ const N_STEADY: usize = 16;
 struct Steady {
     start_s: f64,
     end_s: Option<f64>,
+    level_m_s: f64,
 }
 
 /// How the carriage moved during a stretch of time.
@@ -47,7 +48,7 @@ pub(super) enum Passage {
 pub(super) struct CarriagePass {
     /// Samples of the speed [m/s].
     pub(super) track: Track,
-    noise: Noise,
+    noise: BinNoise,
     quantum: Quantum,
     recent: VecDeque<Bin>,
     level_m_s: f64,
@@ -91,6 +92,13 @@ impl CarriagePass {
         }
     }
 
+    /// Whether the carriage was faster in the steady stretch before the one at `time_s`.
+    pub(super) fn has_slowed(&self, time_s: f64) -> bool {
+        let Some(at) = self.steady.iter().rposition(|s| s.start_s <= time_s) else { return false };
+        let level = |k: usize| self.steady[k].level_m_s.abs();
+        at > 0 && level(at) < level(at - 1)
+    }
+
     fn ripple_m_s(&self) -> f64 {
         self.noise.sd() + 0.5 * self.quantum.step()
     }
@@ -111,13 +119,16 @@ impl CarriagePass {
             if self.steady.len() == N_STEADY {
                 self.steady.pop_front();
             }
+            let kept = KEPT_SHARE * mean_m_s.abs() + FLOOR_M_S + 2.5 * self.ripple_m_s();
+            let settled = |b: &&Bin| b.time_s >= from_s && (b.value - mean_m_s).abs() <= kept;
+            let from_s = self.recent.iter().find(settled).map_or(from_s, |b| b.time_s);
             // The very first stretch is taken to reach back to the start of the record.
             let start_s = if self.steady.is_empty() && self.is_first_window() {
                 f64::NEG_INFINITY
             } else {
                 from_s
             };
-            self.steady.push_back(Steady { start_s, end_s: None });
+            self.steady.push_back(Steady { start_s, end_s: None, level_m_s: mean_m_s });
             (self.level_m_s, self.n_outside) = (mean_m_s, 0);
         }
     }

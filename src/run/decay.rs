@@ -1,6 +1,7 @@
 //! Judges half cycle after half cycle whether the model still rolls freely.
 
 use super::RunEnd;
+use super::bins::Bin;
 use super::half_cycles::HalfCycle;
 use super::half_cycles::Ripple;
 use super::harmonic::Harmonic;
@@ -22,8 +23,18 @@ const RATIO_FALL: f64 = 0.12;
 /// Rise of the amplitude ratio with falling amplitude below which the first half cycle is free:
 /// damping never grows as the amplitude falls by more than this [-].
 const RATIO_RISE: f64 = 0.04;
+/// The same after a hand has rocked the model up.
+const ROCKED_RISE: f64 = 0.015;
+/// Change of half period after a hand has rocked the model up [-].
+const ROCKED_CHANGE: f64 = 0.05;
 /// Deviation from the decay that shows a hand, as a share of the amplitude.
 const DEPARTURE: f64 = 0.06;
+/// Growth of the amplitude by a hand that rocks the model up [-].
+const ROCKED: f64 = 1.02;
+/// Share of the swing by which a model let go has come away from the hand.
+const LET_GO_SHARE: f64 = 0.1;
+/// About the length of a bin [s].
+const BIN_S: f64 = 0.06;
 
 /// What the next half cycle means for a decay.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,17 +50,55 @@ pub(super) enum Verdict {
 /// Whether two successive half cycles can be the start of a decay.
 pub(super) fn begins(first: &HalfCycle, second: &HalfCycle, ripple: Ripple) -> bool {
     let (a, b) = (first.amplitude_rad(), second.amplitude_rad());
-    let from_hold = (second.duration_s() / first.duration_from_hold_s() - 1.0).abs();
-    let from_turn = (second.duration_s() / first.duration_s() - 1.0).abs();
+    let off = |first_s: f64| (second.duration_s() - first_s).abs() / second.duration_s();
+    let (from_hold, from_turn) = (off(first.duration_from_hold_s()), off(first.duration_s()));
+    // The end of a hold is known to a bin or so.
+    let hold_tolerance = BIN_S / second.duration_s();
     a >= START_RAD.max(ripple.lost_below_rad)
         && HALF_PERIOD_S.contains(&second.duration_s())
-        && from_hold.min(from_turn) <= period_tolerance(second, ripple)
+        && from_hold.min(from_turn) <= period_tolerance(second, ripple) + hold_tolerance
         && b <= a * (1.0 + 0.01 + ripple.ratio_tolerance(a))
         && b >= 0.1 * a
 }
 
+/// Whether a hand rocked the model up to the half cycle at `start`, so that it may still have been
+/// on it then: large amplitudes grew before it.
+pub(super) fn is_rocked_up(halves: &[HalfCycle], start: usize) -> bool {
+    let grew = |k: &usize| {
+        let (before, after) = (halves[k - 1].amplitude_rad(), halves[*k].amplitude_rad());
+        before >= START_RAD && after > ROCKED * before
+    };
+    (start.saturating_sub(2).max(1)..=start).filter(grew).count() >= 2
+}
+
+/// First instant [s] at which the model rolls free in a decay whose first half cycle is `first`.
+///
+/// A hand lets go within some time, so a decay from a hold begins when the roll has come away
+/// from it by a tenth of its swing; a free turning point is its own start.
+pub(super) fn start_s(first: &HalfCycle, roll: &Track, ripple: Ripple) -> f64 {
+    if !first.is_from_hold() {
+        return first.start.left_s;
+    }
+    let near_rad = LET_GO_SHARE * 2.0 * first.amplitude_rad() + 3.0 * ripple.sd_rad;
+    let near = |b: &Bin| (b.value - first.start.roll_rad).abs() <= near_rad;
+    let bins = roll.bins(first.start.time_s, first.end.time_s);
+    bins.filter(near)
+        .map(|b| b.time_s)
+        .take_while(|&t| t <= first.end.time_s)
+        .last()
+        .map_or(first.start.left_s, |t| t.max(first.start.left_s))
+}
+
 /// What `next` means for a decay that has lasted for the half cycles of `chain`, at least two.
-pub(super) fn judge(chain: &[HalfCycle], next: &HalfCycle, ripple: Ripple) -> Verdict {
+///
+/// After a hand has rocked the model up (`rocked`), its first half cycle must follow the law of
+/// the later ones closely.
+pub(super) fn judge(
+    chain: &[HalfCycle],
+    next: &HalfCycle,
+    ripple: Ripple,
+    rocked: bool,
+) -> Verdict {
     let [.., last] = chain else { return Verdict::Continues };
     let (due, amplitude_rad) = (due_rad(chain), next.amplitude_rad());
     let ratio = amplitude_rad / last.amplitude_rad();
@@ -69,7 +118,11 @@ pub(super) fn judge(chain: &[HalfCycle], next: &HalfCycle, ripple: Ripple) -> Ve
     }
     if let [first, second] = chain {
         let first_ratio = second.amplitude_rad() / first.amplitude_rad();
-        if first_ratio > ratio + RATIO_RISE + 1.5 * tolerance {
+        let first_period = second.duration_s() / first.duration_s();
+        let (rise, change) = if rocked { (ROCKED_RISE, ROCKED_CHANGE) } else { (RATIO_RISE, 1.0) };
+        if first_ratio > ratio + rise + 1.5 * tolerance
+            || (first_period - 1.0).abs() > change + tolerance
+        {
             return Verdict::DropsFirst;
         }
     }
@@ -91,6 +144,28 @@ pub(super) fn due_rad(chain: &[HalfCycle]) -> f64 {
     };
     let total = last.amplitude_rad() / first.amplitude_rad();
     last.amplitude_rad() * total.powf(1.0 / (recent.len() - 1) as f64)
+}
+
+/// When [s] the amplitude falls below the noise near the end of `chain`, by the line through the
+/// logarithms of its last amplitudes.
+pub(super) fn lost_s(chain: &[HalfCycle], ripple: Ripple) -> f64 {
+    let Some(last) = chain.last() else { return f64::NEG_INFINITY };
+    let recent = &chain[chain.len().saturating_sub(8)..];
+    let points = || {
+        let middle = |h: &HalfCycle| 0.5 * (h.start.left_s + h.end.time_s) - last.end.time_s;
+        recent.iter().map(move |h| (middle(h), h.amplitude_rad().ln()))
+    };
+    let n = recent.len() as f64;
+    let mean_s = points().map(|p| p.0).sum::<f64>() / n;
+    let mean_ln = points().map(|p| p.1).sum::<f64>() / n;
+    let slope = points().map(|p| (p.0 - mean_s) * p.1).sum::<f64>()
+        / points().map(|p| (p.0 - mean_s).powi(2)).sum::<f64>();
+    let half_s = half_period_s(chain);
+    // With less than three half cycles, or none that falls, the last turning point must do.
+    let after_s = (mean_s + (ripple.lost_below_rad.ln() - mean_ln) / slope)
+        .clamp(-1.5 * half_s, 2.0 * half_s);
+    let falls = slope < 0.0 && after_s.is_finite();
+    last.end.time_s + if falls { after_s } else { 0.0 }
 }
 
 /// Half period [s] of the last half cycles.
@@ -124,7 +199,7 @@ pub(super) fn departure_s(
     let decay_per_s = (last.amplitude_rad() / due_rad(chain)).ln() / half_s;
     let from_s = before.start.left_s;
     let fit = Harmonic::fit(roll.bins(from_s, last.end.time_s), frequency_rad_s, decay_per_s)?;
-    let tolerance_rad = DEPARTURE * last.amplitude_rad() + 6.0 * ripple.sd_rad;
+    let tolerance_rad = DEPARTURE * last.amplitude_rad() + 8.0 * ripple.sd_rad;
     fit.departure_s(roll.bins(last.end.time_s, until_s), tolerance_rad)
 }
 
@@ -147,7 +222,7 @@ mod tests {
         let ripple = Ripple { lost_below_rad: 0.15_f64.to_radians(), ..Ripple::default() };
         let halves = chain(turns_deg);
         let (next, before) = halves.split_last().unwrap();
-        judge(before, next, ripple)
+        judge(before, next, ripple, false)
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Tells how strongly the rod drives the roll, against the noise of its force.
 
 use super::harmonic::Harmonic;
-use super::noise::Noise;
+use super::noise::BinNoise;
 use super::noise::Quantum;
 use super::track::Track;
 
@@ -26,7 +26,7 @@ impl DriveSwing {
 pub(super) struct Drive {
     /// Its samples.
     pub(super) track: Track,
-    noise: Noise,
+    noise: BinNoise,
     quantum: Quantum,
 }
 

@@ -36,9 +36,17 @@ const SPREAD: f64 = 0.03;
 /// up by something; the KVLCC2 model in calm water has 0.008 and more at 1 deg.
 const UNDRIVEN_SLOPE: f64 = 0.003;
 /// Deviation of an amplitude at the start of a run from that of its settled cycles [-].
-const START_SPREAD: f64 = 0.015;
+const START_SPREAD: f64 = 0.01;
+/// Half cycles at the start of a run that must follow the sine of the later ones.
+const N_START_CHECKED: usize = 4;
+/// Deviation from that sine, of the amplitude.
+const ARRIVAL: f64 = 0.02;
+/// Deviation of a half period at the start of a run from that of its later half [-].
+const START_PERIOD_SPREAD: f64 = 0.012;
 /// Deviation of a half period from the mean [-].
 const PERIOD_SPREAD: f64 = 0.06;
+/// The same over the settled cycles, where a frequency that still changes must be seen [-].
+const SETTLED_PERIOD_SPREAD: f64 = 0.025;
 /// Deviation of one amplitude that shows another excitation [-].
 const CHANGED: f64 = 0.05;
 /// Deviation of the drive that shows another excitation [-].
@@ -63,10 +71,12 @@ pub(super) fn settled(cycles: &[Cycle], is_recorded: bool, ripple: Ripple) -> Op
     let within = |c: &Cycle, spread: f64| {
         c.steady
             && (c.half.amplitude_rad() / level.amplitude_rad - 1.0).abs() <= spread + 1.5 * noise
-            && period_fits(c, level, noise)
+            && period_off(c, level) <= SETTLED_PERIOD_SPREAD + noise
     };
+    let period_trend = self::level(late).half_period_s / self::level(early).half_period_s - 1.0;
     if level.amplitude_rad < super::decay::START_RAD.max(ripple.lost_below_rad)
         || !is_flat
+        || period_trend.abs() > TREND + 0.5 * noise
         || !last.iter().all(|c| within(c, SPREAD))
     {
         return None;
@@ -89,7 +99,7 @@ pub(super) fn continues(run: &[Cycle], next: &Cycle, ripple: Ripple) -> bool {
     let off = |from: Level| (next.half.amplitude_rad() / from.amplitude_rad - 1.0).abs();
     off(recent) <= CHANGED + 1.5 * noise
         && off(first) <= 2.0 * CHANGED + 1.5 * noise
-        && period_fits(next, recent, noise)
+        && period_off(next, recent) <= PERIOD_SPREAD + noise
         && same_drive(next, recent)
 }
 
@@ -113,8 +123,35 @@ fn level(cycles: &[Cycle]) -> Level {
     Level { amplitude_rad, half_period_s, drive }
 }
 
-fn period_fits(cycle: &Cycle, level: Level, noise: f64) -> bool {
-    (cycle.half.duration_s() / level.half_period_s - 1.0).abs() <= PERIOD_SPREAD + noise
+fn period_off(cycle: &Cycle, level: Level) -> f64 {
+    (cycle.half.duration_s() / level.half_period_s - 1.0).abs()
+}
+
+/// Where, going back, the start of a finished `run` leaves the steady sine of what follows [s].
+fn arrival_s(run: &[Cycle], roll: &Track, ripple: Ripple) -> Option<f64> {
+    let later = run.get(N_START_CHECKED..)?;
+    let later = &later[..later.len().min(16)];
+    let (first, last) = (later.first()?, later.last()?);
+    let (from_s, to_s) = (first.half.start.time_s, last.half.end.time_s);
+    let frequency_rad_s = std::f64::consts::PI / level(later).half_period_s;
+    let fit = Harmonic::fit(roll.bins(from_s, to_s), frequency_rad_s, 0.0)?;
+    let tolerance_rad = ARRIVAL * fit.amplitude() + 4.0 * ripple.sd_rad;
+    fit.departure_s(roll.bins(run[0].half.start.time_s, from_s).rev(), tolerance_rad)
+}
+
+/// Number of half cycles at the start of a finished `run` whose amplitude or period was not yet
+/// that of its later half.
+pub(super) fn n_not_yet_steady(run: &[Cycle], roll: &Track, ripple: Ripple) -> usize {
+    let later = level(&run[run.len() / 2..]);
+    let noise = ripple.ratio_tolerance(later.amplitude_rad);
+    let off = |c: &&Cycle| {
+        (c.half.amplitude_rad() / later.amplitude_rad - 1.0).abs() > START_SPREAD + 1.5 * noise
+            || period_off(c, later) > START_PERIOD_SPREAD + noise
+    };
+    let n_off = run[..run.len() / 2].iter().take_while(off).count();
+    let arrival_s = arrival_s(&run[n_off..], roll, ripple);
+    let early = |c: &&Cycle| arrival_s.is_some_and(|s| c.half.start.time_s < s);
+    n_off + run[n_off..].iter().take_while(early).count()
 }
 
 fn same_drive(cycle: &Cycle, level: Level) -> bool {
@@ -167,7 +204,8 @@ pub(super) fn drive_follows_decay(cycles: &[Cycle]) -> bool {
     let (Some(a), Some(b)) = (first.drive, last.drive) else { return false };
     let roll = last.half.amplitude_rad() / first.half.amplitude_rad();
     let drive = b.amplitude / a.amplitude.max(f64::MIN_POSITIVE);
-    roll < 0.93 && drive <= roll + 0.1 + 3.0 * b.noise / a.amplitude.max(f64::MIN_POSITIVE)
+    let noise = 3.0 * b.noise / a.amplitude.max(f64::MIN_POSITIVE);
+    roll < 0.85 && (drive - roll).abs() <= 0.3 * (1.0 - roll) + noise
 }
 
 #[cfg(test)]

@@ -44,6 +44,9 @@ const LEG_MAX_S: f64 = 15.0;
 /// roll makes no turning points.
 const SHARE_OF_SWING: f64 = 0.15;
 
+/// Share of a swing by which the roll has clearly left its turning point.
+const LEFT_SHARE: f64 = 0.02;
+
 /// A turning point of the roll.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turn {
@@ -73,6 +76,11 @@ impl HalfCycle {
     /// Half a period [s].
     pub(super) fn duration_s(&self) -> f64 {
         self.end.time_s - self.start.time_s
+    }
+
+    /// Whether the model was held at the first turning point, or lingered there.
+    pub(super) fn is_from_hold(&self) -> bool {
+        self.start.left_s - self.start.time_s > 0.3 * self.duration_from_hold_s()
     }
 
     /// Half a period [s] when the model was held at the first turning point.
@@ -193,12 +201,22 @@ impl HalfCycles {
             }
             _ => return None,
         };
+        let mut half = HalfCycle { start: self.turn.replace(end)?, end };
+        half.start.left_s = self.left_s(&half, ripple);
         while self.leg_bins.front().is_some_and(|b| b.time_s < end.time_s) {
             self.leg_bins.pop_front();
         }
-        let half = HalfCycle { start: self.turn.replace(end)?, end };
         self.last = Some(half);
         Some(half)
+    }
+
+    /// When the roll has clearly left the start of `half` [s], now that its swing is known.
+    fn left_s(&self, half: &HalfCycle, ripple: Ripple) -> f64 {
+        let near_rad = 4.5 * ripple.sd_rad + LEFT_SHARE * 2.0 * half.amplitude_rad();
+        let start = half.start;
+        let near =
+            |b: &&Bin| b.time_s < half.end.time_s && (b.value - start.roll_rad).abs() <= near_rad;
+        self.leg_bins.iter().rev().find(near).map_or(start.time_s, |b| b.time_s.max(start.time_s))
     }
 
     /// The lowest point of the leg for `sign` 1, the highest for -1.

@@ -58,21 +58,24 @@ impl Harmonic {
         self.cosine * c + self.sine * s + self.mean * one
     }
 
-    /// Time [s] of the first of two successive bins that differ from the sine by more than
-    /// `tolerance`.
+    /// Time [s] from which the bins leave the sine for good: two in a row differ from it by more
+    /// than `tolerance`, those before them more than a third of it.
     pub(super) fn departure_s(
         &self,
         bins: impl Iterator<Item = Bin>,
         tolerance: f64,
     ) -> Option<f64> {
-        let mut before = None;
+        let (mut since_s, mut n_outside) = (None, 0);
         for bin in bins {
-            if (bin.value - self.at(bin.time_s)).abs() <= tolerance {
-                before = None;
-            } else if before.is_some() {
-                return before;
-            } else {
-                before = Some(bin.time_s);
+            let deviation = (bin.value - self.at(bin.time_s)).abs();
+            if deviation <= tolerance / 3.0 {
+                since_s = None;
+            } else if since_s.is_none() {
+                since_s = Some(bin.time_s);
+            }
+            n_outside = if deviation > tolerance { n_outside + 1 } else { 0 };
+            if n_outside == 2 {
+                return since_s;
             }
         }
         None

@@ -42,7 +42,12 @@ pub(super) struct Motion {
     /// Half cycles after a forced run that may be a single outlier.
     doubtful: Vec<Cycle>,
     unused: Option<Unused>,
+    /// Why no decay can begin until the model is still, held or struck.
     distrust: Option<&'static str>,
+    /// The pass ended while the model rolled.
+    pass_ended: bool,
+    /// A hand rocked the model up to the decay under way.
+    rocked: bool,
     /// The rod drove the model, and still may.
     rod_on: bool,
 }
@@ -118,7 +123,7 @@ impl Motion {
         limits: &Limits,
         events: &mut Vec<Event>,
     ) {
-        let halves: Vec<HalfCycle> = self.cycles.iter().map(|c| c.half).collect();
+        let halves = self.halves();
         let due_rad = if halves.is_empty() { 0.0 } else { decay::due_rad(&halves) };
         let end = match self.state {
             State::Forced => RunEnd::ExcitationChanged,
@@ -128,17 +133,14 @@ impl Motion {
         self.end(end, at_s, records, limits, events);
     }
 
+    fn halves(&self) -> Vec<HalfCycle> {
+        self.cycles.iter().map(|c| c.half).collect()
+    }
+
     fn search(&mut self, cycle: Cycle, closer: &mut Closer) {
-        self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle)).extend(&cycle);
-        if let Some(before) = self.cycles.last() {
-            let growth = cycle.half.amplitude_rad() / before.half.amplitude_rad();
-            if growth > 1.06 && !(before.steady && cycle.steady) {
-                self.distrust =
-                    Some("the roll was still disturbed by the carriage's change of speed");
-            } else if growth > NEW_START {
-                self.distrust = None;
-            }
-        }
+        self.trust_or_not(&cycle);
+        let distrust = self.distrust;
+        self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle, distrust)).extend(&cycle);
         if !cycle.is_driven() {
             self.rod_on = false;
         }
@@ -148,10 +150,29 @@ impl Motion {
         }
         let ripple = closer.records.ripple();
         let recorded = closer.records.drive.is_recorded();
-        if let Some(start) = forced::settled(&self.cycles, recorded, ripple) {
+        let spent = self.pass_ended && closer.records.carriage.has_slowed(cycle.half.end.time_s);
+        if spent {
+        } else if let Some(start) = forced::settled(&self.cycles, recorded, ripple) {
             self.begin(State::Forced, start, closer);
-        } else if let Some(start) = self.decay_start(closer) {
+        } else if self.distrust.is_none()
+            && let Some(start) = self.decay_start(closer)
+        {
+            self.rocked = decay::is_rocked_up(&self.halves(), start);
             self.begin(State::Decay, start, closer);
+        }
+    }
+
+    /// Notes what makes a decay doubtful, and forgets it at a new start.
+    fn trust_or_not(&mut self, cycle: &Cycle) {
+        let Some(before) = self.cycles.last() else { return };
+        let growth = cycle.half.amplitude_rad() / before.half.amplitude_rad();
+        let steady = before.steady && cycle.steady;
+        if growth > 1.06 && !steady {
+            self.distrust = Some("the roll was still disturbed by the change of speed");
+        } else if steady && self.cycles.len() > 1 && growth > NEW_START
+            || cycle.steady && cycle.half.is_from_hold()
+        {
+            self.distrust = None;
         }
     }
 
@@ -178,12 +199,12 @@ impl Motion {
 
     fn decay(&mut self, cycle: Cycle, closer: &mut Closer) {
         let ripple = closer.records.ripple();
-        let halves: Vec<HalfCycle> = self.cycles.iter().map(|c| c.half).collect();
+        let halves = self.halves();
         let driven = |c: &Cycle| c.is_driven();
         let grabbed = driven(&cycle)
             && self.cycles.last().is_some_and(driven)
             && !forced::drive_follows_decay(&self.cycles);
-        let verdict = decay::judge(&halves, &cycle.half, ripple);
+        let verdict = decay::judge(&halves, &cycle.half, ripple, self.rocked);
         match verdict {
             _ if grabbed => {
                 let end_s = self.cycles.last().map_or(0.0, |c| c.half.start.time_s);
@@ -212,7 +233,7 @@ impl Motion {
             && let Some(start) = forced::settled(&self.cycles, false, ripple)
         {
             let first = self.cycles[0];
-            self.unused.get_or_insert_with(|| Unused::from_cycle(&first));
+            self.unused.get_or_insert_with(|| Unused::from_cycle(&first, None));
             for cycle in &self.cycles[..start] {
                 self.unused.iter_mut().for_each(|unused| unused.extend(cycle));
             }
@@ -241,18 +262,31 @@ impl Motion {
     /// Ends the run under way for the reason `end` at `end_s` at the latest.
     fn close(&mut self, end: RunEnd, end_s: f64, closer: &mut Closer) {
         let kind = if self.state == State::Forced { RunKind::Forced } else { RunKind::Decay };
-        let cycles = std::mem::take(&mut self.cycles);
+        let mut cycles = std::mem::take(&mut self.cycles);
+        let ripple = closer.records.ripple();
+        if kind == RunKind::Forced {
+            let n = forced::n_not_yet_steady(&cycles, &closer.records.roll, ripple);
+            for cycle in cycles.drain(..n) {
+                self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle, None)).extend(&cycle);
+            }
+        }
         let Some(first) = cycles.first() else { return };
         let start_s = match kind {
-            RunKind::Decay => first.half.start.left_s,
+            RunKind::Decay => decay::start_s(&first.half, &closer.records.roll, ripple),
             RunKind::Forced => first.half.start.time_s,
         };
+        self.flush(start_s, closer);
         let (end, end_s, why) = closer.usable_end(kind, &cycles, end, end_s);
-        let stretch =
-            Stretch { kind, start_s, end_s, end, cycles: &cycles, distrust: self.distrust };
+        let stretch = Stretch { kind, start_s, end_s, end, cycles: &cycles };
         let event = stretch.close(closer.records, closer.limits);
         closer.events.push(event);
         self.rod_on = kind == RunKind::Forced;
+        self.pass_ended |= end == RunEnd::PassEnded;
+        self.distrust = match end {
+            RunEnd::Caught => Some("the roll after a touch is not free without another release"),
+            RunEnd::PassEnded => Some("the roll was still disturbed by the change of speed"),
+            _ => None,
+        };
         self.state = State::Searching;
         self.unused = Some(Unused::new(end_s, Cause::After(end, why)));
         for cycle in cycles.iter().chain(&self.doubtful).filter(|c| c.half.end.time_s > end_s) {
@@ -295,7 +329,8 @@ impl Closer<'_> {
             RunEnd::Gap | RunEnd::PassEnded | RunEnd::RecordingEnded | RunEnd::TooLong
         );
         if end == RunEnd::LostInNoise {
-            return (end, last_s.min(end_s), format!("{} at {last_s:.1} s", end.clause()));
+            let lost_s = decay::lost_s(&halves, ripple).min(end_s);
+            return (end, lost_s, format!("{} at {lost_s:.1} s", end.clause()));
         }
         let departure_s = match kind {
             RunKind::Decay => decay::departure_s(&halves, &records.roll, ripple, end_s),
@@ -313,7 +348,8 @@ impl Closer<'_> {
         let latest_s = left_s - 2.0 * DROPPED_BEFORE_DEPARTURE * half_s;
         let turns = halves.iter().rev().map(|h| h.end.time_s);
         let until_s = turns.chain(halves.first().map(|h| h.start.left_s));
-        let until_s = until_s.into_iter().find(|&t| t <= latest_s).unwrap_or(latest_s);
+        let turn_s = until_s.into_iter().find(|&t| t <= latest_s).unwrap_or(latest_s);
+        let until_s = turn_s.max(left_s - half_s);
         let end = match (end, kind) {
             (RunEnd::Gap | RunEnd::PassEnded | RunEnd::RecordingEnded, RunKind::Decay) => {
                 RunEnd::Caught

@@ -2,10 +2,8 @@
 
 use std::collections::VecDeque;
 
-/// Values in one block; the estimate is the median over the last blocks, so that a burst or a
-/// release inside one block does not raise it.
-const BLOCK_LENGTH: usize = 20;
-/// Blocks remembered.
+/// Blocks remembered; the estimate is their median, so that a burst or a release inside one of them
+/// does not raise it.
 const N_BLOCKS: usize = 9;
 /// Differences seen before the smallest one is believed to be the quantum.
 const N_STEPS_FOR_QUANTUM: usize = 20;
@@ -16,9 +14,9 @@ const ROUNDING: f64 = 1e-12;
 ///
 /// The fourth difference has variance 70 times that of the noise, while a motion of frequency `w`
 /// sampled every `h` enters it only with `(w h)^4`: at ten values a period with 15 %, at twenty
-/// with 1 %.
-#[derive(Debug, Default)]
-pub(super) struct Noise {
+/// with 1 %. Blocks of `BLOCK_LENGTH` values give one estimate each.
+#[derive(Debug)]
+pub(super) struct Noise<const BLOCK_LENGTH: usize> {
     last: [f64; 4],
     n_last: usize,
     square_sum: f64,
@@ -26,7 +24,18 @@ pub(super) struct Noise {
     blocks: VecDeque<f64>,
 }
 
-impl Noise {
+impl<const BLOCK_LENGTH: usize> Default for Noise<BLOCK_LENGTH> {
+    fn default() -> Self {
+        Self { last: [0.0; 4], n_last: 0, square_sum: 0.0, n_squares: 0, blocks: VecDeque::new() }
+    }
+}
+
+/// Noise of bins, known after a second.
+pub(super) type BinNoise = Noise<20>;
+/// Noise of samples, known to some 4 %.
+pub(super) type SampleNoise = Noise<200>;
+
+impl<const BLOCK_LENGTH: usize> Noise<BLOCK_LENGTH> {
     /// Takes the next value.
     pub(super) fn push(&mut self, value: f64) {
         let [a, b, c, d] = self.last;
@@ -96,7 +105,7 @@ mod tests {
     fn the_noise_of_a_rolling_model_is_told_from_its_roll() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
         let noise = rand_distr::Normal::new(0.0, 0.001).unwrap();
-        let mut estimate = Noise::default();
+        let mut estimate = BinNoise::default();
         for k in 0..400 {
             // Twenty values a second, period 1 s, 10 degrees.
             let roll = 0.17 * (std::f64::consts::TAU * k as f64 / 20.0).sin();

@@ -7,8 +7,9 @@ use super::bins::Bin;
 use super::carriage_pass::CarriagePass;
 use super::drive::Drive;
 use super::half_cycles::Ripple;
-use super::noise::Noise;
+use super::noise::BinNoise;
 use super::noise::Quantum;
+use super::noise::SampleNoise;
 use super::track::Track;
 
 /// Longest still stretch that is averaged [s]; also how long every sample is kept.
@@ -27,8 +28,8 @@ pub(super) struct Records {
     pub(super) drive: Drive,
     /// The carriage.
     pub(super) carriage: CarriagePass,
-    sample_noise: Noise,
-    bin_noise: Noise,
+    sample_noise: SampleNoise,
+    bin_noise: BinNoise,
     quantum: Quantum,
     still: VecDeque<Still>,
 }
@@ -54,10 +55,14 @@ impl Records {
     pub(super) fn ripple(&self) -> Ripple {
         let quantum_rad = self.quantum.step();
         let step_sd_rad = quantum_rad / 12.0_f64.sqrt();
+        // A vibration is noise of the bins more than of the samples; of a channel so slow that
+        // each bin is one sample the bins' estimate is the quicker one.
+        let fine = self.roll.has_bins_of_many();
+        let sample_sd_rad = if fine { self.sample_noise.sd() } else { 0.0 };
         Ripple {
             sd_rad: SMOOTHED * self.bin_noise.sd(),
             quantum_rad,
-            lost_below_rad: 3.0 * self.sample_noise.sd().max(step_sd_rad),
+            lost_below_rad: 3.0 * sample_sd_rad.max(self.bin_noise.sd()).max(step_sd_rad),
         }
     }
 

@@ -53,6 +53,11 @@ impl Track {
         bin
     }
 
+    /// Whether a bin holds more than two samples.
+    pub(super) fn has_bins_of_many(&self) -> bool {
+        3.0 * self.interval_s < super::bins::WIDTH_S
+    }
+
     /// Starts a new bin, because the next sample does not follow the last one.
     pub(super) fn interrupt(&mut self) {
         self.binner = Binner::default();
@@ -83,7 +88,11 @@ impl Track {
     }
 
     /// The bins from `start_s` to `end_s`, both included.
-    pub(super) fn bins(&self, start_s: f64, end_s: f64) -> impl Iterator<Item = Bin> + Clone + '_ {
+    pub(super) fn bins(
+        &self,
+        start_s: f64,
+        end_s: f64,
+    ) -> impl DoubleEndedIterator<Item = Bin> + Clone + '_ {
         let from = self.bins.partition_point(|b| b.time_s < start_s);
         let to = self.bins.partition_point(|b| b.time_s <= end_s).max(from);
         self.bins.range(from..to).copied()

@@ -20,6 +20,8 @@ pub(super) enum Cause {
     Unsettled,
     /// The rod drove the model, and the roll was not steady.
     DrivenUnsettled,
+    /// No decay can begin here, for this reason.
+    Distrusted(&'static str),
     /// A run ended, and the roll went on.
     After(RunEnd, String),
 }
@@ -43,8 +45,10 @@ impl Unused {
     }
 
     /// A stretch that begins with the half cycle `cycle`.
-    pub(super) fn from_cycle(cycle: &Cycle) -> Self {
-        let cause = if !cycle.steady {
+    pub(super) fn from_cycle(cycle: &Cycle, distrust: Option<&'static str>) -> Self {
+        let cause = if let Some(why) = distrust {
+            Cause::Distrusted(why)
+        } else if !cycle.steady {
             Cause::SpeedChanging
         } else if cycle.is_driven() {
             Cause::DrivenUnsettled
@@ -74,6 +78,10 @@ impl Unused {
         let amplitude_rad = cycle.half.amplitude_rad();
         self.n_large += usize::from(amplitude_rad >= START_RAD);
         self.largest_rad = self.largest_rad.max(amplitude_rad);
+        // What trembles before the first roll to speak of is rest.
+        if self.n_large == 0 && !matches!(self.cause, Cause::After(..)) {
+            self.start_s = cycle.half.end.time_s;
+        }
     }
 
     /// The rejection of the stretch up to `end_s` at the latest; none when it was no roll to
@@ -99,6 +107,7 @@ impl Unused {
             Cause::SpeedChanging => {
                 format!("{rolled} while the carriage was changing its speed")
             }
+            Cause::Distrusted(why) => format!("{rolled}, but {why}"),
             Cause::Unsettled => {
                 format!("{rolled} that neither decays freely nor is steady, such as a hand makes")
             }

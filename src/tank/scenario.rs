@@ -123,7 +123,7 @@ pub struct Condition {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Damping {
-    /// Rows in order of Froude number, joined by straight lines in `Fr^2`.
+    /// Rows in order of Froude number, joined by straight lines in `Fr^2`, that reach every pass.
     Table(Vec<DampingRow>),
     /// `b1 = b0 (1 + kappa Fr^2)` (4.3), with a scatter from pass to pass.
     Law(DampingLaw),

@@ -40,8 +40,8 @@ fn figure(page: &CampaignPage, index: usize, condition: &str) -> Figure {
         );
     }
     for (kind, name, ink) in [
+        (RunKind::Forced, "forced runs", Ink::new(Hue::Green).shaped(Shape::OpenCircle)),
         (RunKind::Decay, "free decays", Ink::new(Hue::Blue).shaped(Shape::Circle)),
-        (RunKind::Forced, "forced runs", Ink::new(Hue::Green).shaped(Shape::Square)),
     ] {
         let bars: Vec<_> = page
             .runs_of(condition)

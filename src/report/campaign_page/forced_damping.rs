@@ -24,7 +24,7 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
             let y = Axis::new("B_{eq} [N m s]").holding(0.0);
             let figure = groups::figure(
                 format!("forced-damping-{}", index + 1),
-                format!("Equivalent damping against frequency: {condition}"),
+                &format!("Equivalent damping against frequency: {condition}"),
                 (Axis::new("frequency of excitation ω [rad/s]"), y),
                 &groups::by_value(points.clone(), FROUDE_APART),
                 |froude| format!("Fr {}", fixed(froude, 2)),

@@ -3,14 +3,17 @@
 use crate::report::figure::{Axis, Figure, Ink, Panel};
 use crate::report::notation;
 
-/// Values `(x, y, lo, hi)` of one group with the group's mean.
-pub(super) type Group = (f64, Vec<(f64, f64, f64, f64)>);
+/// A point `(x, y, lo, hi)` with its bar.
+pub(super) type Point = (f64, f64, f64, f64);
+
+/// The mean of a group's keys, with the group's points.
+pub(super) type Group = (f64, Vec<Point>);
 
 /// Groups `(key, point)` pairs: a key further than `apart` from the next smaller begins a group.
-pub(super) fn by_value(mut points: Vec<(f64, (f64, f64, f64, f64))>, apart: f64) -> Vec<Group> {
+pub(super) fn by_value(mut points: Vec<(f64, Point)>, apart: f64) -> Vec<Group> {
     points.retain(|(key, _)| key.is_finite());
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.0.total_cmp(&b.1.0)));
-    let mut groups: Vec<(Vec<f64>, Vec<(f64, f64, f64, f64)>)> = Vec::new();
+    let mut groups: Vec<(Vec<f64>, Vec<Point>)> = Vec::new();
     for (key, point) in points {
         match groups.last_mut() {
             Some((keys, group)) if keys.last().is_some_and(|last| key - last <= apart) => {
@@ -29,7 +32,7 @@ pub(super) fn by_value(mut points: Vec<(f64, (f64, f64, f64, f64))>, apart: f64)
 /// One figure with a series of joined error bars per group.
 pub(super) fn figure(
     id: String,
-    title: String,
+    title: &str,
     axes: (Axis, Axis),
     groups: &[Group],
     label: impl Fn(f64) -> String,
@@ -42,7 +45,7 @@ pub(super) fn figure(
             .line(&xs, &ys, Ink::of_series(index).wide(0.8))
             .error_bars(points, Ink::of_series(index).named(label(*key)));
     }
-    Figure::new(id, notation::plain(&title), x).panel(panel)
+    Figure::new(id, notation::plain(title), x).panel(panel)
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
                 .collect();
             let figure = groups::figure(
                 format!("inertia-{}", index + 1),
-                format!("Inertia against frequency: {condition}"),
+                &format!("Inertia against frequency: {condition}"),
                 (Axis::new("frequency of excitation ω [rad/s]"), Axis::new("(I+ΔI)/(m B²) [–]")),
                 &groups::by_value(points.clone(), FROUDE_APART),
                 |froude| format!("Fr {}", fixed(froude, 2)),

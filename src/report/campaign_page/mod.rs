@@ -11,6 +11,7 @@ mod inertia;
 mod losses;
 mod particulars;
 mod peak_moment;
+mod recordings_without_runs;
 mod rejected;
 mod runs;
 
@@ -22,7 +23,7 @@ use crate::inverse::identification::ForcedResponse;
 use crate::results::{IdentifiedRun, Results};
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&CampaignPage) -> Option<Markup>; 12] = [
+const PARTS: [fn(&CampaignPage) -> Option<Markup>; 13] = [
     particulars::part,
     conditions::part,
     damping_against_froude::part,
@@ -34,6 +35,7 @@ const PARTS: [fn(&CampaignPage) -> Option<Markup>; 12] = [
     forced_damping::part,
     forced_runs::part,
     rejected::part,
+    recordings_without_runs::part,
     losses::part,
 ];
 
@@ -79,10 +81,11 @@ pub(super) fn html(campaign: &Campaign, results: &Results) -> Markup {
     let page = CampaignPage { campaign, results };
     let body = html! {
         h1 { (campaign.name) }
-        p.lead { "Roll damping identified from " (results.runs.len()) " run"
-            @if results.runs.len() != 1 { "s" } " in "
-            (results.overviews.len().max(campaign.recordings.len())) " recordings; "
-            (results.rejected.len()) " stretches not used." }
+        p.lead {
+            "Roll damping identified from " (counted(results.runs.len(), "run")) " in "
+            (counted(results.overviews.len().max(campaign.recordings.len()), "recording")) "; "
+            (counted(results.rejected.len(), "stretch")) " not used."
+        }
         @if results.runs.is_empty() {
             p.warning { "No run was identified; the reasons are listed below." }
         }
@@ -93,4 +96,13 @@ pub(super) fn html(campaign: &Campaign, results: &Results) -> Markup {
         (glossary::symbols())
     };
     document::page(&campaign.name, &body)
+}
+
+fn counted(n: usize, noun: &str) -> String {
+    let ending = match (n, noun.ends_with("ch")) {
+        (1, _) => "",
+        (_, true) => "es",
+        (_, false) => "s",
+    };
+    format!("{n} {noun}{ending}")
 }

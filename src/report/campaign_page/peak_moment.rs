@@ -47,7 +47,7 @@ fn figures(page: &CampaignPage, number: usize, condition: &str) -> Vec<Figure> {
     vec![
         groups::figure(
             format!("peak-frequency-{number}"),
-            format!("Peak moment against frequency: {condition}"),
+            &format!("Peak moment against frequency: {condition}"),
             (Axis::new("frequency of excitation ω [rad/s]"), peak()),
             &groups::by_value(against_frequency, FROUDE_APART),
             |froude| format!("Fr {}", fixed(froude, 2)),
@@ -55,7 +55,7 @@ fn figures(page: &CampaignPage, number: usize, condition: &str) -> Vec<Figure> {
         .caption("Peak of |U| per cycle; compare runs of equal roll amplitude only."),
         groups::figure(
             format!("peak-froude-{number}"),
-            format!("Peak moment against Froude number: {condition}"),
+            &format!("Peak moment against Froude number: {condition}"),
             (Axis::new("Froude number Fr [–]"), peak()),
             &groups::by_value(against_froude, FREQUENCY_APART_RAD_S),
             |w| format!("ω {} rad/s", fixed(w, 2)),

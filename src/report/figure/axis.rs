@@ -17,7 +17,13 @@ impl Axis {
 
     /// A time axis [s], which begins and ends with its data.
     pub(crate) fn time() -> Self {
-        Self { margin: 0.0, ..Self::new("time t [s]") }
+        Self::new("time t [s]").tight()
+    }
+
+    /// The same axis without a margin beside its data.
+    #[must_use]
+    pub(crate) fn tight(self) -> Self {
+        Self { margin: 0.0, ..self }
     }
 
     /// The same axis with `value` always on it.
@@ -74,6 +80,9 @@ pub(crate) struct SecondScale {
 /// Ticks at round numbers, with the labels written beside them.
 pub(super) fn ticks(lo: f64, hi: f64, n_max: usize) -> Vec<(f64, String)> {
     let step = round_step((hi - lo) / n_max.max(1) as f64);
+    if !step.is_finite() || step <= 0.0 {
+        return Vec::new();
+    }
     let decimals = decimals_of(step);
     let (first, last) = ((lo / step - 1e-9).ceil() as i64, (hi / step + 1e-9).floor() as i64);
     (first..=last)

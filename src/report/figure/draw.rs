@@ -138,7 +138,7 @@ fn stroke(canvas: &Canvas, points: Vec<(i32, i32)>, ink: &Ink) -> Drawn {
     let style = rgb(ink.hue).stroke_width((ink.width_px * f64::from(UNITS)) as u32);
     if ink.dashed {
         let dash = (6 * UNITS, 4 * UNITS);
-        canvas.draw(&DashedPathElement::new(points.into_iter(), dash.0, dash.1, style))
+        canvas.draw(&DashedPathElement::new(points, dash.0, dash.1, style))
     } else {
         canvas.draw(&PathElement::new(points, style))
     }

@@ -86,7 +86,7 @@ fn draw_all(canvas: &Canvas, figure: &Figure, rows: &[Vec<&Mark>], top: i32) -> 
         border(canvas, place)?;
         side_labels(canvas, &plane, panel, place)?;
         if last {
-            text(canvas, &figure.x.label(), middle(place), place.bottom + 24, HPos::Center)?;
+            text(canvas, figure.x.label(), middle(place), place.bottom + 24, HPos::Center)?;
         }
         place.top = place.bottom + GAP;
     }
@@ -101,7 +101,7 @@ fn middle(place: Place) -> i32 {
 fn grid(canvas: &Canvas, plane: &Plane, place: Place, last: bool) -> Drawn {
     let faint = RGBColor(225, 225, 225).stroke_width(UNITS as u32 * 8 / 10);
     let (x, y) = (plane.get_x_range(), plane.get_y_range());
-    let n_rows = ((place.bottom - place.top) / 34).clamp(3, 8) as usize;
+    let n_rows = ((place.bottom - place.top) / 27).clamp(3, 9) as usize;
     for (value, label) in axis::ticks(x.start, x.end, 9) {
         plane.draw(&PathElement::new(vec![(value, y.start), (value, y.end)], faint))?;
         if last {
@@ -118,9 +118,11 @@ fn grid(canvas: &Canvas, plane: &Plane, place: Place, last: bool) -> Drawn {
 }
 
 fn border(canvas: &Canvas, place: Place) -> Drawn {
-    let corners = [(place.left, place.top), (place.right, place.bottom)];
+    let Place { left, top, right, bottom } = place;
+    let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
+    let outline: Vec<_> = corners.map(|(x, y)| (x * UNITS, y * UNITS)).to_vec();
     let style = RGBColor(90, 90, 90).stroke_width(UNITS as u32 * 9 / 10);
-    canvas.draw(&Rectangle::new(corners.map(|(x, y)| (x * UNITS, y * UNITS)), style))
+    canvas.draw(&PathElement::new(outline, style))
 }
 
 /// The label of the vertical axis, one line each, with the second scale on the right.

@@ -3,109 +3,15 @@
 mod axis;
 mod draw;
 mod frame;
+mod ink;
 mod thin;
 
 pub(crate) use axis::{Axis, SecondScale};
+pub(crate) use ink::{Hue, Ink, Shape};
 
 use maud::{Markup, PreEscaped, html};
 
 use super::notation;
-
-/// Hues that remain apart for colour-blind readers (Okabe and Ito, 2008).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Hue {
-    /// Black.
-    Black,
-    /// Blue.
-    Blue,
-    /// Vermillion.
-    Vermillion,
-    /// Bluish green.
-    Green,
-    /// Reddish purple.
-    Purple,
-    /// Orange.
-    Orange,
-    /// Sky blue.
-    Sky,
-    /// Neutral grey, for what is in the background.
-    Grey,
-}
-
-/// How a point is marked, so that series remain apart in a black-and-white print.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Shape {
-    /// Filled circle.
-    Circle,
-    /// Open circle.
-    OpenCircle,
-    /// Filled square.
-    Square,
-    /// Filled triangle.
-    Triangle,
-    /// Filled diamond.
-    Diamond,
-    /// Upright cross.
-    Cross,
-    /// A dot, for clouds of points.
-    Dot,
-}
-
-/// How one mark is drawn and what the legend calls it.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Ink {
-    hue: Hue,
-    shape: Shape,
-    dashed: bool,
-    width_px: f64,
-    label: Option<String>,
-}
-
-impl Ink {
-    /// A solid line of 1.4 px, or filled circles.
-    pub(crate) fn new(hue: Hue) -> Self {
-        Self { hue, shape: Shape::Circle, dashed: false, width_px: 1.4, label: None }
-    }
-
-    /// The ink of the `index`-th of several series, distinct in colour and in shape.
-    pub(crate) fn of_series(index: usize) -> Self {
-        const SERIES: [(Hue, Shape); 7] = [
-            (Hue::Blue, Shape::Circle),
-            (Hue::Vermillion, Shape::Square),
-            (Hue::Green, Shape::Triangle),
-            (Hue::Purple, Shape::Diamond),
-            (Hue::Orange, Shape::Cross),
-            (Hue::Sky, Shape::OpenCircle),
-            (Hue::Black, Shape::Dot),
-        ];
-        let (hue, shape) = SERIES[index % SERIES.len()];
-        Self::new(hue).shaped(shape)
-    }
-
-    /// The same ink with an entry in the legend.
-    #[must_use]
-    pub(crate) fn named(self, label: impl Into<String>) -> Self {
-        Self { label: Some(label.into()), ..self }
-    }
-
-    /// The same ink with another mark for points.
-    #[must_use]
-    pub(crate) fn shaped(self, shape: Shape) -> Self {
-        Self { shape, ..self }
-    }
-
-    /// The same ink, dashed.
-    #[must_use]
-    pub(crate) fn dashed(self) -> Self {
-        Self { dashed: true, ..self }
-    }
-
-    /// The same ink with another line width [px].
-    #[must_use]
-    pub(crate) fn wide(self, width_px: f64) -> Self {
-        Self { width_px, ..self }
-    }
-}
 
 /// One thing drawn in a panel, in the panel's own units.
 #[derive(Debug, Clone, PartialEq)]
@@ -139,10 +45,11 @@ impl Panel {
         Self { height_px, ..self }
     }
 
-    /// The same panel with a second scale on its right side.
+    /// The same panel with a second scale on its right side, where its factor is known.
     #[must_use]
     pub(crate) fn second_scale(self, second: SecondScale) -> Self {
-        Self { second: Some(second), ..self }
+        let known = second.factor.is_finite() && second.factor > 0.0;
+        Self { second: known.then_some(second), ..self }
     }
 
     /// Adds a curve; it is broken at holes in `x` much wider than its usual step.
@@ -247,12 +154,12 @@ impl Figure {
     /// What a screen reader says: the axes and the names of the curves.
     fn description(&self) -> String {
         let axes: Vec<_> = self.panels.iter().map(|panel| panel.y.label()).collect();
-        let mut text = format!("{} against {}.", axes.join(", "), self.x.label());
-        let labels: Vec<_> = self.legend().into_iter().filter_map(|mark| label_of(mark)).collect();
-        if !labels.is_empty() {
-            text.push_str(&format!(" Shown: {}.", labels.join(", ")));
-        }
-        notation::plain(&text)
+        let labels: Vec<_> = self.legend().into_iter().filter_map(label_of).collect();
+        let shown = match labels.as_slice() {
+            [] => String::new(),
+            labels => format!(" Shown: {}.", labels.join(", ")),
+        };
+        notation::plain(&format!("{} against {}.{shown}", axes.join(", "), self.x.label()))
     }
 
     /// The marks with a legend entry, each label once, in order of drawing.
@@ -280,5 +187,45 @@ fn ink_of(mark: &Mark) -> &Ink {
         | Mark::ErrorBars { ink, .. }
         | Mark::Stretch { ink, .. }
         | Mark::Level { ink, .. } => ink,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// Whatever identification hands over, a page is written, with every coordinate a number.
+        #[test]
+        fn any_numbers_draw_without_a_panic_and_without_a_stray_coordinate(
+            x in proptest::collection::vec(proptest::num::f64::ANY, 0..9),
+            y in proptest::collection::vec(proptest::num::f64::ANY, 0..9),
+            lo in proptest::collection::vec(-1e3..1e3, 0..9),
+        ) {
+            let bars: Vec<_> = x.iter().zip(&y).map(|(&x, &y)| (x, y, y - 1.0, y + 1.0)).collect();
+            let panel = Panel::new(Axis::new("y"))
+                .second_scale(SecondScale { label: "z".to_owned(), factor: 2.0 })
+                .line(&x, &y, Ink::new(Hue::Blue).dashed().named("line"))
+                .line(&x, &lo, Ink::new(Hue::Blue))
+                .band(&x, &lo, &y, Ink::new(Hue::Sky).named("band"))
+                .points(&x, &lo, Ink::of_series(3))
+                .error_bars(&bars, Ink::of_series(4))
+                .stretch(-1.0, 1.0, Ink::new(Hue::Green));
+            let html = Figure::new("any", "Any", Axis::new("x")).panel(panel).markup().into_string();
+            prop_assert!(!html.contains("NaN") && !html.contains(">inf"));
+        }
+    }
+
+    #[test]
+    fn a_label_from_a_file_is_escaped_in_the_drawing() {
+        let panel = Panel::new(Axis::new("y")).line(
+            &[0.0, 1.0],
+            &[0.0, 1.0],
+            Ink::new(Hue::Blue).named("<script>&\""),
+        );
+        let html = Figure::new("any", "Any", Axis::new("x")).panel(panel).markup().into_string();
+        assert!(!html.contains("<script>") && html.contains("&lt;script&gt;"));
     }
 }

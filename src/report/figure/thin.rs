@@ -24,7 +24,7 @@ pub(super) fn peaks(value: &[f64]) -> Vec<usize> {
     kept
 }
 
-/// The envelope of a band: `x`, lowest `lo` and highest `hi` of each of up to `POINTS_MAX` stretches.
+/// A band as `(x, lowest, highest)` of each of up to `POINTS_MAX / 2` stretches.
 pub(super) fn envelope(x: &[f64], lo: &[f64], hi: &[f64]) -> Vec<(f64, f64, f64)> {
     let n = x.len().min(lo.len()).min(hi.len());
     stretches(n, POINTS_MAX / 2)
@@ -70,6 +70,6 @@ mod tests {
         hi[7_777] = 5.0;
         let envelope = envelope(&x, &lo, &hi);
         assert!(envelope.len() <= POINTS_MAX);
-        assert!(envelope.iter().any(|&(_, _, high)| high == 5.0));
+        assert!(envelope.iter().any(|&(_, _, high)| high >= 5.0));
     }
 }

@@ -52,7 +52,7 @@ fn summary(chain: &Chain) -> Markup {
 }
 
 fn traces(chain: &Chain) -> Markup {
-    let mut figure = Figure::new("traces", "Traces of some components", Axis::new("sweep"))
+    let mut figure = Figure::new("traces", "Traces of some components", Axis::new("sweep").tight())
         .caption("The shaded burn-in is not used.");
     for trace in chain.traces.iter().take(N_TRACES_MAX) {
         let sweep: Vec<_> = trace.sweep.iter().map(|&sweep| sweep as f64).collect();

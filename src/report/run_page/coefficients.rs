@@ -7,11 +7,16 @@ use maud::{Markup, html};
 use super::RunPage;
 use crate::inverse::estimate::Estimate;
 use crate::report::document::{estimate_cell, number_cell, section, table, text_cell, typeset};
+use crate::report::notation;
 use crate::report::number::{fixed, standard_deviation};
+
+/// Caption of the first table.
+const LAW: &str = "The damping law B/(I+ΔI) = b₁ φ′ + b₃ φ′³.";
 
 /// Symbol, meaning, unit, value.
 type Row = (&'static str, &'static str, &'static str, Estimate);
 
+#[expect(clippy::unnecessary_wraps, reason = "every part of a page has the same shape")]
 pub(super) fn part(page: &RunPage) -> Option<Markup> {
     let columns =
         [("Symbol", ""), ("Meaning", ""), ("Unit", ""), ("Mean and 95 % interval", ""), ("sd", "")];
@@ -30,10 +35,10 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
         "coefficients",
         "Coefficients",
         &html! {
-            (table("law", "The damping law B/(I+ΔI) = b₁ φ′ + b₃ φ′³.", &columns, &cells(law(page))))
+            (table("law", LAW, &columns, &cells(law(page))))
             p { "Posterior correlation of b₁ and b₃: " b { (typeset(&correlation)) }
-                ". Where it is near −1 the two trade against each other; b"
-                sub { "eq" } " at an amplitude inside the run is then known far better than either." }
+                ". Near −1 the two trade against each other; " (notation::html("b_{eq}"))
+                " at an amplitude inside the run is then known far better than either." }
             (table("motion", "Motion and channel.", &columns, &cells(motion(page))))
         },
     ))

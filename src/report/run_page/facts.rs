@@ -9,6 +9,7 @@ use crate::report::notation;
 use crate::report::number::{estimate, fixed, significant};
 use crate::run::RunEnd;
 
+#[expect(clippy::unnecessary_wraps, reason = "every part of a page has the same shape")]
 pub(super) fn part(page: &RunPage) -> Option<Markup> {
     let (found, identification) = (&page.run.run, page.identification());
     let units = page.field_units();
@@ -17,7 +18,8 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
         |still| {
             let zero = fixed(still.roll_rad.to_degrees(), 3);
             let force = still.force.map_or(String::new(), |force| {
-                format!(", mean of the drive channel {}", significant(force, 3))
+                let unit = if page.campaign.exciter.is_some() { "N" } else { "N m" };
+                format!(", mean {} {unit} of the drive", significant(force, 2))
             });
             let (start, end) = (fixed(still.start_s, 2), fixed(still.end_s, 2));
             format!("{start} to {end} s, mean roll {zero} deg{force}")
@@ -49,9 +51,15 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
     if let Some(at) = units.at_comparison() {
         let note = if at.extrapolated { " (not reached in this run)" } else { "" };
         let value = estimate(&at.fitted_per_s);
-        rows.push(("Equivalent damping b_{eq} at 5 deg", format!("{value} 1/s{note}")));
+        rows.push(("b_{eq} at 5 deg, from the law", format!("{value} 1/s{note}")));
+        if let Some(local) = &at.local_per_s {
+            let value = estimate(local);
+            rows.push(("b_{eq} at 5 deg, half cycles near it", format!("{value} 1/s")));
+        }
+        let value = estimate(&units.moment(at.fitted_per_s));
+        rows.push(("B_{eq} at 5 deg, from the law", format!("{value} N m s{note}")));
         let value = estimate(&units.b44_hat(at.fitted_per_s));
-        rows.push(("The same as B̂₄₄", format!("{value}{note}")));
+        rows.push(("B̂₄₄ at 5 deg, from the law", format!("{value}{note}")));
     }
     let rmse = significant(identification.resimulation.rmse_rad.to_degrees(), 3);
     rows.push(("Resimulation rmse", format!("{rmse} deg")));
