@@ -199,6 +199,8 @@ fn values_outside_their_limits_are_refused_by_name() {
         ("{ froude = 0.4,", "{ froude = 0.15,", "0.200 is outside the damping table of"),
         ("impulse_n_m_s = 1.5", "impulse_n_m_s = 90.0", "strike.impulse_n_m_s = 90 is outside"),
         ("b1_per_s = 0.3796", "b1_per_s = 0.0", "b1_per_s of the damping = 0 is not positive"),
+        ("arm = \"constant\"", "arm = \"rod\"", "arm = \"rod\" needs rod_length_m"),
+        ("force_sign = 1.0", "force_sign = 0.5", "force_sign = 0.5 is neither 1.0 nor -1.0"),
         ("name = \"troubled\"", "name = \"a/b\"", "name = \"a/b\" cannot be a file name"),
     ];
     for (from, to, expected) in cases {
@@ -219,8 +221,8 @@ proptest! {
         let text: Vec<char> = documented().chars().collect();
         let start = (at * text.len() as f64) as usize;
         let end = (start + length).min(text.len());
-        let damaged: String =
-            text[..start].iter().copied().chain(patch.chars()).chain(text[end..].iter().copied()).collect();
+        let around = |part: &[char]| part.iter().collect::<String>();
+        let damaged = around(&text[..start]) + &patch + &around(&text[end..]);
         match Scenario::parse(&damaged, "damaged.toml") {
             Err(error) => {
                 let message = error.to_string();

@@ -8,7 +8,7 @@ use devices::{Quantity, Sample};
 use crate::columns::{ChannelColumn, TimeColumn};
 use crate::csv_file::{CsvFile, line_at, text_of};
 use crate::error::ReplayError;
-use crate::note::{Note, Tally};
+use crate::note::{Note, Tally, counted};
 use crate::number::{CellFault, Numbers};
 use crate::stamps::{StampFault, Stamped, Stamps, WAITING_MAX};
 use crate::stream::Stream;
@@ -232,8 +232,8 @@ impl Stream for CsvStream {
         }
         if self.stamps.left_out > 0 {
             notes.push(Note::lost(format!(
-                "\"{path}\": {} rows at the start or end left out, as no time stamp is on one side",
-                self.stamps.left_out
+                "\"{path}\": {} at the start or end left out, as no time stamp is on one side",
+                counted(self.stamps.left_out, "row")
             )));
         }
         for channel in self.channels.iter().filter(|channel| channel.empty.count > 0) {

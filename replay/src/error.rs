@@ -236,9 +236,9 @@ pub enum ReplayError {
         /// The topics in the file.
         present: Vec<String>,
     },
-    /// A topic whose messages are not JSON.
-    #[error("\"{}\" topic \"{topic}\" is encoded in \"{encoding}\", read is \"json\"",
-        path.display())]
+    /// A topic whose messages are in an encoding that is not read.
+    #[error("\"{}\" topic \"{topic}\" is encoded in \"{encoding}\", read are \"json\" and \
+        \"protobuf\"", path.display())]
     Encoding {
         /// The file.
         path: PathBuf,
@@ -246,6 +246,16 @@ pub enum ReplayError {
         topic: String,
         /// Its message encoding.
         encoding: String,
+    },
+    /// A topic whose schema does not describe its messages.
+    #[error("\"{}\" topic \"{topic}\" has no usable schema: {fault}", path.display())]
+    Schema {
+        /// The file.
+        path: PathBuf,
+        /// The topic.
+        topic: String,
+        /// What is wrong with the schema.
+        fault: String,
     },
     /// A message whose field is not a number.
     #[error("\"{}\" topic \"{topic}\", message {message}: field \"{field}\" is {found}",

@@ -2,7 +2,7 @@
 
 use devices::{Quantity, Sample};
 
-use crate::note::Note;
+use crate::note::{Note, counted};
 
 /// An interval is a hole when it is longer than this many typical ones; a single lost sample or a
 /// hiccup of the recording computer is none.
@@ -80,12 +80,11 @@ impl Gaps {
             )));
         }
         if self.holes > 0 {
-            let plural = if self.holes == 1 { "" } else { "s" };
             notes.push(Note::lost(format!(
-                "{}: {} gap{plural}, {:.3} s without samples in all, the longest {:.3} s after \
+                "{}: {}, {:.3} s without samples in all, the longest {:.3} s after \
                  {:.3} s",
                 self.quantity.name(),
-                self.holes,
+                counted(self.holes, "gap"),
                 self.total_s,
                 self.longest_s,
                 self.longest_from_s

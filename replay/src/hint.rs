@@ -58,7 +58,7 @@ impl ReplayError {
             Self::MissingTopic { topic, present, .. } => nearest(topic, present)
                 .map(|name| format!("did you mean \"{name}\"?"))
                 .or_else(|| Some("check topic in [columns] of the campaign file".to_owned())),
-            Self::Encoding { .. } => {
+            Self::Encoding { .. } | Self::Schema { .. } => {
                 Some("convert the recording to JSON messages, or export it to CSV".to_owned())
             }
             Self::Field { .. } => Some(

@@ -2,20 +2,9 @@
 
 use std::fmt;
 
-use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use crate::message::Found;
 
-/// What stands at the end of a path.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Found {
-    /// A number; JSON knows no others than finite ones.
-    Number(f64),
-    /// `null`, as many programs write a missing value.
-    Null,
-    /// Nothing: the message has no such field.
-    Absent,
-    /// Something else, in words.
-    Other(&'static str),
-}
+use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
 /// The value at `path`: keys and array indices joined by points, such as `position.0`.
 ///

@@ -26,8 +26,9 @@ impl Inventory {
     pub(crate) fn read(path: &Path) -> Result<Self, ReplayError> {
         let ours = is_ours(&mut Records::open(path)?)?;
         let mut records = Records::open(path)?;
+        // A damaged summary is no loss as long as the messages can be read.
         if records.seek_to_summary()?
-            && let Some(inventory) = Self::from_summary(&mut records)?
+            && let Ok(Some(inventory)) = Self::from_summary(&mut records)
         {
             return Ok(Self { ours, ..inventory });
         }

@@ -38,6 +38,8 @@ pub(crate) struct Records {
     /// Whether the unpacker checks a chunk's checksum before it gives any of its records.
     checks_first: bool,
     body: Vec<u8>,
+    /// Whether the footer was reached.
+    complete: bool,
     torn_at: Option<u64>,
 }
 
@@ -76,6 +78,7 @@ impl Records {
             unpacker: unpacker(true),
             checks_first: true,
             body: Vec::new(),
+            complete: false,
             torn_at: None,
         })
     }
@@ -104,6 +107,9 @@ impl Records {
             }
             let start = self.offset;
             self.record_start = start;
+            if self.complete {
+                return Ok(None);
+            }
             if self.torn_at.is_some() || !self.has(PREFIX_BYTES) {
                 self.torn_at.get_or_insert(start);
                 return Ok(None);
@@ -113,8 +119,7 @@ impl Records {
             let (opcode, length) = (prefix[0], u64::from_le_bytes(eight(&prefix, 1)));
             match opcode {
                 op::FOOTER => {
-                    self.offset = self.length;
-                    return Ok(None);
+                    (self.complete, self.offset) = (true, self.length);
                 }
                 op::CHUNK => self.start_chunk(&prefix, start, length)?,
                 // A computer that loses power can leave a tail of zeros behind.
@@ -172,7 +177,8 @@ impl Records {
             return Ok(());
         }
         if name_bytes == 0 {
-            // Records of a chunk that is not compressed stand in the file as if there were none.
+            // Records of a chunk that is not compressed stand in the file as if there were none;
+            // their checksum is not looked at.
             return self.seek(self.offset + rest);
         }
         if name_bytes > 64 {

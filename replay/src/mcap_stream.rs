@@ -1,7 +1,7 @@
 //! One topic of an MCAP file as a stream of samples in time order.
 
 use std::cmp::Ordering;
-use std::collections::{BTreeSet, BinaryHeap};
+use std::collections::{BTreeMap, BinaryHeap};
 use std::path::{Path, PathBuf};
 
 use devices::{Quantity, Sample};
@@ -9,9 +9,9 @@ use mcap::parse_record;
 use mcap::records::{Record, op};
 
 use crate::error::ReplayError;
-use crate::json_field::{Found, number_at};
 use crate::mcap_records::Records;
-use crate::note::{Note, Tally};
+use crate::message::{Format, Found};
+use crate::note::{Note, Tally, counted};
 use crate::stamps::{StampFault, Stamped, Stamps, WAITING_MAX};
 use crate::stream::Stream;
 
@@ -43,7 +43,10 @@ pub(crate) struct McapStream {
     path: PathBuf,
     records: Records,
     place: Place,
-    channel_ids: BTreeSet<u16>,
+    /// Name and definition of the schemas seen.
+    schemas: BTreeMap<u16, (String, Vec<u8>)>,
+    /// The topic's channels, of which it may have several.
+    channels: BTreeMap<u16, Format>,
     window: BinaryHeap<Waiting>,
     stamps: Stamps<f64>,
     messages: u64,
@@ -90,7 +93,8 @@ impl McapStream {
             path: path.to_owned(),
             records: Records::open(path)?,
             place,
-            channel_ids: BTreeSet::new(),
+            schemas: BTreeMap::new(),
+            channels: BTreeMap::new(),
             window: BinaryHeap::new(),
             stamps: Stamps::new(),
             messages: 0,
@@ -106,19 +110,22 @@ impl McapStream {
     /// Reads until one more message of the topic is in the window, or the file ends.
     fn read_message(&mut self) -> Result<(), ReplayError> {
         while let Some(opcode) = self.records.next()? {
-            if !matches!(opcode, op::CHANNEL | op::MESSAGE) {
+            if !matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) {
                 continue;
             }
             match parse_record(opcode, self.records.body()) {
+                Ok(Record::Schema { header, data }) => {
+                    self.schemas.insert(header.id, (header.name, data.into_owned()));
+                }
                 Ok(Record::Channel(channel)) => {
                     if channel.topic == self.place.topic {
-                        self.channel_ids.insert(channel.id);
+                        self.add_channel(&channel)?;
                     }
                 }
                 Ok(Record::Message { header, data }) => {
-                    if self.channel_ids.contains(&header.channel_id) {
+                    if let Some(format) = self.channels.get(&header.channel_id) {
                         self.messages += 1;
-                        let read = self.sample(header.log_time, &data)?;
+                        let read = self.sample(header.log_time, format, &data)?;
                         if let Some((time_s, value)) = read {
                             self.hold_back(time_s, value);
                             return Ok(());
@@ -134,30 +141,59 @@ impl McapStream {
         Ok(())
     }
 
+    fn add_channel(&mut self, channel: &mcap::records::Channel) -> Result<(), ReplayError> {
+        // A summary repeats its channels; the first of them is the one the messages follow.
+        if self.channels.contains_key(&channel.id) {
+            return Ok(());
+        }
+        let schema = self.schemas.get(&channel.schema_id);
+        let mut paths = vec![self.place.field.as_str()];
+        if let MessageTime::Field { path, .. } = &self.place.time {
+            paths.push(path);
+        }
+        let format = Format::new(&channel.message_encoding, schema, &paths).map_err(|fault| {
+            let topic = self.place.topic.clone();
+            ReplayError::Schema { path: self.path.clone(), topic, fault }
+        })?;
+        self.channels.insert(channel.id, format);
+        Ok(())
+    }
+
     /// Time [s] and value of a message; none when a field is null.
-    fn sample(&self, log_time_ns: u64, data: &[u8]) -> Result<Option<(f64, f64)>, ReplayError> {
+    fn sample(
+        &self,
+        log_time_ns: u64,
+        format: &Format,
+        message: &[u8],
+    ) -> Result<Option<(f64, f64)>, ReplayError> {
         let time_s = match &self.place.time {
             MessageTime::LogTime { first_ns } => {
                 Some((i128::from(log_time_ns) - i128::from(*first_ns)) as f64 / 1e9)
             }
             MessageTime::Field { path, seconds_per_unit } => {
-                self.number(data, path, *seconds_per_unit)?
+                self.number(format, message, path, *seconds_per_unit)?
             }
         };
-        let value = self.number(data, &self.place.field, self.place.si_per_unit)?;
+        let value = self.number(format, message, &self.place.field, self.place.si_per_unit)?;
         Ok(time_s.zip(value))
     }
 
-    fn number(&self, data: &[u8], field: &str, per_unit: f64) -> Result<Option<f64>, ReplayError> {
-        let found = match number_at(data, field) {
+    fn number(
+        &self,
+        format: &Format,
+        message: &[u8],
+        field: &str,
+        per_unit: f64,
+    ) -> Result<Option<f64>, ReplayError> {
+        let found = match format.number_at(message, field) {
             Ok(Found::Number(number)) if (number * per_unit).is_finite() => {
                 return Ok(Some(number * per_unit));
             }
             Ok(Found::Null) => return Ok(None),
-            Ok(Found::Number(number)) => format!("{number}, beyond the range of a number"),
+            Ok(Found::Number(number)) => format!("{number}, not a finite number in SI units"),
             Ok(Found::Absent) => "not there".to_owned(),
             Ok(Found::Other(what)) => format!("{what}, not a number"),
-            Err(error) => format!("unreadable, as the message is not JSON ({error})"),
+            Err(fault) => format!("unreadable, as the message is {fault}"),
         };
         Err(ReplayError::Field {
             path: self.path.clone(),
@@ -239,16 +275,16 @@ impl Stream for McapStream {
         }
         if self.stamps.left_out > 0 {
             notes.push(Note::lost(format!(
-                "{place}: {} messages at the end left out, as they repeat the last time stamp",
-                self.stamps.left_out
+                "{place}: {} at the end left out, repeating the last time stamp",
+                counted(self.stamps.left_out, "message")
             )));
         }
         if let Some(offset) = self.records.torn_at() {
             notes.push(Note::lost(format!(
-                "{place}: the file is torn at byte {offset} of {}, {} messages before it were \
-                 read; hint: `mcap recover` makes it whole for other programs",
+                "{place}: the file is torn at byte {offset} of {}, {} before it read; \
+                 hint: `mcap recover` makes it whole for other programs",
                 self.records.bytes_total(),
-                self.messages
+                counted(self.messages, "message")
             )));
         }
     }

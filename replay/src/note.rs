@@ -48,13 +48,17 @@ impl Tally {
 
     /// "3 rows, the first at line 17".
     pub(crate) fn told(&self, what: &str, place: &str) -> String {
-        let plural = if self.count == 1 { "" } else { "s" };
+        let counted = counted(self.count, what);
         match (self.count, self.first) {
-            (1, Some(first)) => format!("1 {what}, at {place} {first}"),
-            (count, Some(first)) => {
-                format!("{count} {what}{plural}, the first at {place} {first}")
-            }
-            (count, None) => format!("{count} {what}{plural}"),
+            (1, Some(first)) => format!("{counted}, at {place} {first}"),
+            (_, Some(first)) => format!("{counted}, the first at {place} {first}"),
+            (_, None) => counted,
         }
     }
+}
+
+/// "1 row", "2 rows".
+pub(crate) fn counted(count: u64, what: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{plural}")
 }

@@ -12,8 +12,9 @@ use crate::csv_stream::{CsvStream, TimeBase};
 use crate::error::ReplayError;
 use crate::mcap_inventory::Inventory;
 use crate::mcap_stream::{McapStream, MessageTime, Place};
+use crate::message::READABLE;
 use crate::stream::Stream;
-use crate::topics::{ENCODING, TIME_FIELD, TOPICS};
+use crate::topics::{TIME_FIELD, TOPICS};
 
 /// The streams of one recording.
 pub(crate) struct Sources {
@@ -111,7 +112,7 @@ impl Sources {
                 return Err(ReplayError::NoTopic { path, quantity, present });
             };
             match inventory.encodings.get(&topic) {
-                Some(encoding) if encoding == ENCODING => {}
+                Some(encoding) if READABLE.contains(&encoding.as_str()) => {}
                 Some(encoding) => {
                     let (path, encoding) = (path.to_owned(), encoding.clone());
                     return Err(ReplayError::Encoding { path, topic, encoding });

@@ -6,7 +6,7 @@ use crate::error::ReplayError;
 use crate::note::Note;
 
 /// Samples of one file on one time base.
-pub(crate) trait Stream {
+pub(crate) trait Stream: Send {
     /// The next sample in the order of time and, at equal times, of the quantities.
     fn next(&mut self) -> Result<Option<Sample>, ReplayError>;
 

@@ -9,7 +9,7 @@ use serde_json::json;
 pub(crate) const PROFILE: &str = "rolltank";
 /// Name of the metadata record that tells where the recording comes from.
 pub(crate) const METADATA: &str = "rolltank";
-/// Message encoding of every topic.
+/// Message encoding of every topic of ours.
 pub(crate) const ENCODING: &str = "json";
 /// Field of the time [s] on the recording's own time base, to the bit.
 pub(crate) const TIME_FIELD: &str = "time_s";

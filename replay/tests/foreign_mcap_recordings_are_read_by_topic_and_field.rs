@@ -195,7 +195,10 @@ fn an_encoding_that_cannot_be_read_is_told() {
     let folder = folder();
     let path = write(&folder, "story.mcap", mcap_file(WriteOptions::new(), "cdr", &day()));
     let (message, hint) = refusal(&path, &roll_by("/imu", "angle.roll"));
-    assert_eq!(message, "\"story.mcap\" topic \"/imu\" is encoded in \"cdr\", read is \"json\"");
+    assert_eq!(
+        message,
+        "\"story.mcap\" topic \"/imu\" is encoded in \"cdr\", read are \"json\" and \"protobuf\""
+    );
     assert!(hint.contains("JSON"), "{hint}");
     assert!(play(&path, &Columns::default()).is_err(), "no channel is mapped");
 }

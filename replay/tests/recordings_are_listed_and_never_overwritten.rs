@@ -44,6 +44,8 @@ fn an_existing_file_is_never_overwritten() {
         assert!(matches!(error, ReplayError::Exists { .. }), "{error}");
         assert!(error.hint().expect("there is a hint").contains("another name"));
         assert_eq!(fs::read(&path).expect("it is there"), b"precious");
+        let files = fs::read_dir(folder.path()).expect("the folder can be read").count();
+        assert_eq!(files, 2, "the table and what was there already");
         fs::remove_file(&path).expect("it can be removed");
     }
 }

@@ -62,6 +62,19 @@ fn a_tear_in_the_summary_loses_no_sample() {
 }
 
 #[test]
+fn a_damaged_summary_loses_no_sample() {
+    let mut bytes = recorded();
+    let footer = bytes.len() - 37;
+    assert_eq!(bytes[footer], mcap::records::op::FOOTER);
+    let start: [u8; 8] = bytes[footer + 9..footer + 17].try_into().expect("eight bytes");
+    // The first record of the summary gets a length that leads nowhere.
+    bytes[u64::from_le_bytes(start) as usize + 3] = 0xff;
+    let folder = folder();
+    let played = play_whole(&write(&folder, "story.mcap", &bytes), &Columns::default());
+    assert_eq!(played.samples.len(), 20_000);
+}
+
+#[test]
 fn a_tail_of_zeros_is_a_tear() {
     let mut bytes = recorded();
     bytes.truncate(bytes.len() / 2);

@@ -138,7 +138,8 @@ pub(super) fn loop_erratum() -> Erratum {
             .to_owned(),
         computed: format!(
             "a frequency {:.0} % off adds {added_per_s2:.2} 1/s2 at {roll_rad} rad of roll, where \
-             the damping is zero; the damping itself peaks at {damping_per_s2:.2} 1/s2 in that swing",
+             the damping is zero; the damping itself peaks at {damping_per_s2:.2} 1/s2 in that \
+             swing",
             100.0 * error,
         ),
         how: format!(

@@ -45,7 +45,7 @@ pub(super) fn rank_erratum() -> Erratum {
     }
 }
 
-/// Noise, in the record's unit, that the inverse-gamma hyperprior `(a, b)` expects of a perfectly fitted record.
+/// Noise, in the record's unit, that the hyperprior `(a, b)` leaves a perfectly fitted record.
 ///
 /// The mean of `1/sigma^2` given no residual at all is `(m/2 + a) / b` (2.13).
 fn noise_floor(n_samples: usize, a: f64, b: f64) -> f64 {

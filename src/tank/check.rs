@@ -1,7 +1,7 @@
 //! The physical limits of model, tank, instruments and conditions.
 
 use super::instruments::{FileFormat, Instrument};
-use super::scenario::{Condition, Damping, DampingRow, Scenario};
+use super::scenario::{ArmShape, Condition, Damping, DampingRow, Scenario, Shaker};
 
 /// A table of the scenario file: `[hull]` is `("hull", None)`, the third pass `("pass", Some(2))`.
 pub(super) type Table = (&'static str, Option<usize>);
@@ -17,12 +17,15 @@ pub(super) struct Problem {
     pub(super) hint: String,
 }
 
+/// Nothing, or the first mistake.
 pub(super) type Checked = Result<(), Problem>;
 
 /// Highest sample rate [Hz].
 const SAMPLE_RATE_MAX_HZ: f64 = 20_000.0;
-/// Largest `b1/w` and `b3 w` [-], five to ten times what stops a roll from swinging at all.
+/// Largest `b1/w` and `b3 w` [-]; a `b1/w` of 2 already stops a roll from swinging.
 pub(super) const OVERDAMPED: f64 = 10.0;
+
+/// Tells one mistake.
 pub(super) fn problem(table: Table, message: String, hint: &str) -> Checked {
     Err(Problem { table, message, hint: hint.to_owned() })
 }
@@ -92,7 +95,7 @@ impl Scenario {
         positive(table, "carriage_acceleration_m_s2", basin.carriage_acceleration_m_s2)?;
         positive(table, "carriage_braking_m_s2", basin.carriage_braking_m_s2)?;
         within(table, "end_margin_m", basin.end_margin_m, 0.0, basin.length_m)?;
-        self.exciter.map_or(Ok(()), |s| positive(("exciter", None), "moment_arm_m", s.moment_arm_m))
+        self.exciter.as_ref().map_or(Ok(()), check_exciter)
     }
 
     fn check_instruments(&self) -> Checked {
@@ -158,6 +161,30 @@ impl Scenario {
             }
         }
         Ok(())
+    }
+}
+
+fn check_exciter(shaker: &Shaker) -> Checked {
+    let table = ("exciter", None);
+    positive(table, "moment_arm_m", shaker.moment_arm_m)?;
+    if !matches!(shaker.force_sign, 1.0 | -1.0) {
+        let message = format!("force_sign = {} is neither 1.0 nor -1.0", shaker.force_sign);
+        return problem(table, message, "it turns the recorded force round and nothing else");
+    }
+    match (shaker.arm, shaker.rod_length_m) {
+        (ArmShape::Rod, None) => {
+            let message = "arm = \"rod\" needs rod_length_m".to_owned();
+            problem(table, message, "give the length between the two joints of the rod")
+        }
+        // A shorter rod cannot follow its pin joint through every angle.
+        (ArmShape::Rod, Some(length_m)) => {
+            within(table, "rod_length_m", length_m, shaker.moment_arm_m, 1000.0)
+        }
+        (_, Some(_)) => {
+            let message = "rod_length_m has no effect on this arm".to_owned();
+            problem(table, message, "write arm = \"rod\", or leave rod_length_m out")
+        }
+        (_, None) => Ok(()),
     }
 }
 

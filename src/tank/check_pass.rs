@@ -35,7 +35,9 @@ impl Scenario {
         }
         within(table, "repeat", pass.repeat as f64, 1.0, REPEAT_MAX as f64)?;
         within(table, "static_heel_deg", as_written_deg(pass.static_heel_rad), -45.0, 45.0)?;
+        not_negative(table, "declared_speed_m_s", pass.declared_speed_m_s.unwrap_or(0.0))?;
         not_negative(table, "carriage.start_s", pass.carriage.start_s)?;
+        not_negative(table, "carriage.brake_s", pass.carriage.brake_s.unwrap_or(0.0))?;
         let speed_m_s = self.pass_speed_m_s(pass);
         if let Err(message) = Carriage::plan(&self.tank, &pass.carriage, speed_m_s) {
             return problem(table, message, &self.speed_hint(pass, speed_m_s));

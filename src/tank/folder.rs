@@ -190,11 +190,18 @@ fn campaign_head(scenario: &Scenario) -> String {
     );
     if let Some(shaker) = scenario.exciter {
         let arm = match shaker.arm {
-            ArmShape::Constant => "",
-            ArmShape::Cosine => "arm = \"cosine\"\n",
+            ArmShape::Constant => "constant",
+            ArmShape::Cosine => "cosine",
+            ArmShape::Rod => "rod",
         };
-        write!(text, "\n[exciter]\nmoment_arm_m = {:?}\n{arm}", shaker.moment_arm_m)
-            .expect(INTO_STRING);
+        let rod =
+            shaker.rod_length_m.map_or_else(String::new, |m| format!("rod_length_m = {m:?}\n"));
+        write!(
+            text,
+            "\n[exciter]\nmoment_arm_m = {:?}\narm = \"{arm}\"\n{rod}force_sign = {:?}\n",
+            shaker.moment_arm_m, shaker.force_sign,
+        )
+        .expect(INTO_STRING);
     }
     if scenario.recordings.format == FileFormat::Csv {
         text.push_str(&columns(scenario));

@@ -101,7 +101,12 @@ pub fn scenario() -> Scenario {
         hull: HULL,
         water: Water::default(),
         tank: BASIN,
-        exciter: Some(Shaker { moment_arm_m: MOMENT_ARM_M, arm: ArmShape::Constant }),
+        exciter: Some(Shaker {
+            moment_arm_m: MOMENT_ARM_M,
+            arm: ArmShape::Constant,
+            rod_length_m: None,
+            force_sign: 1.0,
+        }),
         instruments: instruments(),
         recordings: RecordingFormat::default(),
         conditions,

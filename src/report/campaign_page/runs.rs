@@ -21,7 +21,7 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
             let rmse = identification.resimulation.rmse_rad.to_degrees();
             html! {
                 td { a href=(run_link(&run.id)) { (run.id) } }
-                td { (kind_name(run.run.kind)) }
+                td.number { (kind_name(run.run.kind)) }
                 td { (run.condition) }
                 (number_cell(&fixed(run.froude, 3)))
                 (estimate_cell(Some(&identification.natural_frequency_rad_s)))

@@ -5,7 +5,7 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{Axis, Figure, Mark, Panel, axis, draw, ink_of, label_of, notation};
+use super::{Axis, Figure, Mark, Panel, axis, draw, label_of, notation};
 
 /// Drawing units in one pixel: the backend rounds to whole units, which would show as steps.
 pub(super) const UNITS: i32 = 10;
@@ -20,6 +20,7 @@ const GAP: i32 = 16;
 const LEGEND_ROW: i32 = 19;
 const SWATCH: i32 = 24;
 const FONT_PX: f64 = 12.0;
+const LETTER_PX: f64 = 0.56 * FONT_PX;
 
 pub(super) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub(super) type Plane<'a> =
@@ -164,10 +165,22 @@ fn text_at(canvas: &Canvas, words: &str, at: (i32, i32), side: HPos, height: VPo
     canvas.draw(&Text::new(words.to_owned(), (at.0 * UNITS, at.1 * UNITS), style))
 }
 
-/// Width [px] of one legend entry, from the usual width of a letter.
+/// Letters of a legend entry that fit beside its swatch, from the usual width of a letter.
+const LETTERS_MAX: usize = ((WIDTH - LEFT - RIGHT - SWATCH) as f64 / LETTER_PX) as usize;
+
+/// The label of a legend entry; a name from a campaign file may be longer than the figure is wide.
+fn entry(mark: &Mark) -> String {
+    let label = label_of(mark).unwrap_or_default();
+    if label.chars().count() <= LETTERS_MAX {
+        return label.to_owned();
+    }
+    label.chars().take(LETTERS_MAX - 1).chain(['\u{2026}']).collect()
+}
+
+/// Width [px] of one legend entry.
 fn entry_width(mark: &Mark) -> i32 {
-    let n_letters = label_of(mark).map_or(0, |label| notation::plain(label).chars().count());
-    SWATCH + 6 + (n_letters as f64 * FONT_PX * 0.56) as i32 + 16
+    let n_letters = notation::plain(&entry(mark)).chars().count();
+    SWATCH + 6 + (n_letters as f64 * LETTER_PX) as i32 + 16
 }
 
 fn legend_rows(figure: &Figure) -> Vec<Vec<&Mark>> {
@@ -193,8 +206,7 @@ fn legend(canvas: &Canvas, rows: &[Vec<&Mark>]) -> Drawn {
         let mut x = LEFT;
         for mark in marks {
             draw::swatch(canvas, mark, (x * UNITS, y * UNITS), SWATCH * UNITS)?;
-            let label = ink_of(mark).label.as_deref().unwrap_or_default();
-            text_at(canvas, label, (x + SWATCH + 5, y), HPos::Left, VPos::Center)?;
+            text_at(canvas, &entry(mark), (x + SWATCH + 5, y), HPos::Left, VPos::Center)?;
             x += entry_width(mark);
         }
     }

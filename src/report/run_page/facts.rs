@@ -19,7 +19,7 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
             let zero = fixed(still.roll_rad.to_degrees(), 3);
             let force = still.force.map_or(String::new(), |force| {
                 let unit = if page.campaign.exciter.is_some() { "N" } else { "N m" };
-                format!(", mean {} {unit} of the drive", significant(force, 2))
+                format!(", mean drive {} {unit}", significant(force, 2))
             });
             let (start, end) = (fixed(still.start_s, 2), fixed(still.end_s, 2));
             format!("{start} to {end} s, mean roll {zero} deg{force}")

@@ -1,4 +1,4 @@
-//! The reference reader in Python opens our recordings and finds the same numbers.
+//! The reference packages in Python and we find the same numbers in each other's recordings.
 
 use std::env;
 use std::fs;
@@ -7,9 +7,9 @@ use std::process::{Command, Output};
 
 use devices::Quantity::{Force, Moment, Roll, Speed};
 use devices::Sample;
-use replay::{Provenance, Recorder};
+use replay::{ChannelColumn, Columns, Provenance, Recorder, TimeColumn};
 
-use crate::recordings::folder;
+use crate::recordings::{channel, folder, play_whole, write};
 
 /// Checks the file named first against the lines `topic time_s value` in the file named second.
 const CHECK: &str = r#"
@@ -44,6 +44,36 @@ with open(sys.argv[1], "rb") as file:
 print("python agrees")
 "#;
 
+/// Writes protobuf messages by the reference implementation to the file named first.
+const WRITE: &str = r#"
+import sys
+from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+from mcap.writer import Writer
+Field = descriptor_pb2.FieldDescriptorProto
+file = descriptor_pb2.FileDescriptorProto(name="tank.proto", package="oe.tank", syntax="proto3")
+imu, other = file.message_type.add(name="Imu"), file.message_type.add(name="Angle")
+inner = imu.nested_type.add(name="Angle")
+inner.field.add(name="roll", number=2, type=Field.TYPE_DOUBLE, label=Field.LABEL_OPTIONAL)
+imu.field.add(name="angle", number=5, type=Field.TYPE_MESSAGE, label=Field.LABEL_OPTIONAL,
+              type_name=".oe.tank.Imu.Angle")
+imu.field.add(name="force", number=300, type=Field.TYPE_SINT32, label=Field.LABEL_REPEATED)
+imu.field.add(name="t_us", number=7, type=Field.TYPE_INT64, label=Field.LABEL_OPTIONAL)
+pool = descriptor_pool.DescriptorPool()
+pool.Add(file)
+Imu = message_factory.GetMessageClass(pool.FindMessageTypeByName("oe.tank.Imu"))
+definition = descriptor_pb2.FileDescriptorSet(file=[file]).SerializeToString()
+with open(sys.argv[1], "wb") as output:
+    writer = Writer(output)
+    writer.start()
+    schema = writer.register_schema("oe.tank.Imu", "protobuf", definition)
+    channel = writer.register_channel("/imu", "protobuf", schema)
+    for index in range(1000):
+        message = Imu(t_us=10_000 * index - 5_000_000, force=[1, -index])
+        message.angle.roll = (index - 500) / 7
+        writer.add_message(channel, index, message.SerializeToString(), index)
+    writer.finish()
+"#;
+
 /// The interpreter of a virtual environment that has `mcap`; none without Python or network.
 fn python() -> Option<PathBuf> {
     let home = Path::new(env!("CARGO_TARGET_TMPDIR")).join("python_mcap");
@@ -55,24 +85,50 @@ fn python() -> Option<PathBuf> {
             Err(error) => Err(error.to_string()),
         }
     };
-    let import = ["-c", "import mcap.reader, zstandard"];
+    let import = ["-c", "import mcap.reader, zstandard, google.protobuf"];
     let made = run(&python, &import).or_else(|_| {
         run(Path::new("python3"), &["-m", "venv", &home.display().to_string()])?;
-        run(&python, &["-m", "pip", "install", "--quiet", "mcap"])?;
+        run(&python, &["-m", "pip", "install", "--quiet", "mcap", "protobuf"])?;
         run(&python, &import)
     });
     match made {
         Ok(()) => Some(python),
         Err(error) if env::var_os("CI").is_none() => {
-            eprintln!("skipped: no Python with the mcap package here: {error}");
+            eprintln!("skipped: no Python with mcap and protobuf here: {error}");
             None
         }
-        Err(error) => panic!("no Python with the mcap package: {error}"),
+        Err(error) => panic!("no Python with mcap and protobuf: {error}"),
     }
 }
 
 #[test]
-fn schema_times_and_values_are_equal() {
+fn protobuf_written_by_the_reference_implementation_is_read() {
+    let Some(python) = python() else { return };
+    let folder = folder();
+    let script = write(&folder, "write.py", WRITE);
+    let target = folder.path().join("story.mcap");
+    let status = Command::new(python).arg(script).arg(&target).status().expect("Python runs");
+    assert!(status.success());
+    let on_imu = |quantity, path| {
+        let topic = Some("/imu".to_owned());
+        ChannelColumn { topic, ..channel(quantity, path) }
+    };
+    let given = Columns {
+        time: Some(TimeColumn { column: "t_us".to_owned(), seconds_per_unit: 1e-6 }),
+        sample_rate_hz: None,
+        channels: vec![on_imu(Roll, "angle.roll"), on_imu(Force, "force.1")],
+    };
+    let played = play_whole(&target, &given);
+    let time_s = |index: i32| f64::from(10_000 * index - 5_000_000) * 1e-6;
+    let expected = |value: &dyn Fn(f64) -> f64| -> Vec<_> {
+        (0..1000).map(|index| (time_s(index), value(f64::from(index)))).collect()
+    };
+    assert_eq!(played.of(Roll), expected(&|index| (index - 500.0) / 7.0));
+    assert_eq!(played.of(Force), expected(&|index| -index));
+}
+
+#[test]
+fn schema_times_and_values_of_our_recordings_are_equal_in_python() {
     let Some(python) = python() else { return };
     let folder = folder();
     let target = folder.path().join("story.mcap");
