@@ -1,5 +1,6 @@
 //! A labelled scene of the simulated tank, and the check that its runs are found.
 
+use devices::Sample;
 use rolltank::run::{Event, Limits, Rejection, Run, RunEnd, RunFinder, RunKind};
 use rolltank::tank::{Scenario, SimulatedPass, TrueKind, TrueRun, simulate_pass};
 
@@ -16,6 +17,8 @@ pub(crate) struct Scene {
     pub(crate) speed: &'static str,
     /// Keys of the pass beside its actions.
     pub(crate) pass: &'static str,
+    /// Seed of the draws.
+    pub(crate) seed: u64,
 }
 
 /// Bare hull of the paper at rest, roll alone.
@@ -25,6 +28,7 @@ pub(crate) const AT_REST: Scene = Scene {
     force: "",
     speed: "",
     pass: "froude = 0.0",
+    seed: 20,
 };
 
 /// The same with force and speed recorded, at Froude number 0.2.
@@ -70,7 +74,7 @@ impl Scene {
     /// Plays the actions and gives the samples with their truth.
     pub(crate) fn play(&self, actions: &str) -> SimulatedPass {
         let scenario = Scenario::parse(&self.text(actions), "scene.toml").unwrap();
-        simulate_pass(&scenario, 0, 20)
+        simulate_pass(&scenario, 0, self.seed)
     }
 
     /// Plays the actions, finds the runs and checks each against the truth.
@@ -130,9 +134,14 @@ impl Found {
 
 /// Feeds a played pass to the run finder.
 pub(crate) fn find(played: &SimulatedPass, limits: Limits) -> Found {
+    find_in(&played.samples, limits)
+}
+
+/// Feeds samples to the run finder.
+pub(crate) fn find_in(samples: &[Sample], limits: Limits) -> Found {
     let mut finder = RunFinder::new(limits);
     let mut events = Vec::new();
-    for sample in &played.samples {
+    for sample in samples {
         finder.push(sample, &mut events);
     }
     finder.finish(&mut events);

@@ -14,6 +14,10 @@ use super::records::Records;
 /// Ratio of last to first amplitude above which a decay does not tell its damping from noise.
 const DECAY_RATIO_MAX: f64 = 0.97;
 
+/// Half cycles that a decay needs when it begins and ends in the middle of other roll: waves make
+/// three falling amplitudes in a row, not six.
+const N_BETWEEN_TOUCHES: usize = 6;
+
 /// A stretch whose end is known.
 #[derive(Debug)]
 pub(super) struct Stretch<'a> {
@@ -27,6 +31,8 @@ pub(super) struct Stretch<'a> {
     pub(super) end: RunEnd,
     /// Its half cycles, those after the end included.
     pub(super) cycles: &'a [Cycle],
+    /// Whether it began without a hold or a rest before it, and ended by another touch.
+    pub(super) between_touches: bool,
 }
 
 impl Stretch<'_> {
@@ -47,11 +53,21 @@ impl Stretch<'_> {
         &self.cycles[..self.cycles.iter().take_while(whole).count()]
     }
 
-    fn refusal(&self, used: &[Cycle]) -> Option<String> {
-        let needed = match self.kind {
-            RunKind::Decay => N_HALF_CYCLES_MIN,
+    fn n_needed(&self) -> usize {
+        match self.kind {
             RunKind::Forced => forced::N_SETTLED,
-        };
+            RunKind::Decay if self.between_touches => N_BETWEEN_TOUCHES,
+            RunKind::Decay => N_HALF_CYCLES_MIN,
+        }
+    }
+
+    /// Whether it has too few half cycles for a run.
+    pub(super) fn is_too_short(&self) -> bool {
+        self.used().len() < self.n_needed()
+    }
+
+    fn refusal(&self, used: &[Cycle]) -> Option<String> {
+        let needed = self.n_needed();
         let n = used.len();
         let what = match self.kind {
             RunKind::Decay => "free decay",

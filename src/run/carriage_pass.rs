@@ -92,6 +92,15 @@ impl CarriagePass {
         }
     }
 
+    /// How long the speed had been steady at `time_s` [s]; zero when it was not.
+    pub(super) fn steady_for_s(&self, time_s: f64) -> f64 {
+        if self.track.last_s().is_none() {
+            return f64::INFINITY;
+        }
+        let holds = |s: &&Steady| s.start_s <= time_s && s.end_s.is_none_or(|e| time_s < e);
+        self.steady.iter().find(holds).map_or(0.0, |s| time_s - s.start_s)
+    }
+
     /// Whether the carriage was faster in the steady stretch before the one at `time_s`.
     pub(super) fn has_slowed(&self, time_s: f64) -> bool {
         let Some(at) = self.steady.iter().rposition(|s| s.start_s <= time_s) else { return false };

@@ -23,10 +23,10 @@ const RATIO_FALL: f64 = 0.12;
 /// Rise of the amplitude ratio with falling amplitude below which the first half cycle is free:
 /// damping never grows as the amplitude falls by more than this [-].
 const RATIO_RISE: f64 = 0.04;
-/// The same after a hand has rocked the model up.
-const ROCKED_RISE: f64 = 0.015;
+/// Share of the next fall of amplitude that the first must show after a hand rocked the model up.
+const ROCKED_FALL: f64 = 0.75;
 /// Change of half period after a hand has rocked the model up [-].
-const ROCKED_CHANGE: f64 = 0.05;
+const ROCKED_CHANGE: f64 = 0.03;
 /// Deviation from the decay that shows a hand, as a share of the amplitude.
 const DEPARTURE: f64 = 0.06;
 /// Growth of the amplitude by a hand that rocks the model up [-].
@@ -107,7 +107,7 @@ pub(super) fn judge(
     if amplitude_rad < ripple.lost_below_rad && due < 1.5 * ripple.lost_below_rad {
         return Verdict::Ends(RunEnd::LostInNoise);
     }
-    let near_noise = amplitude_rad < 2.0 * ripple.lost_below_rad;
+    let near_noise = amplitude_rad.max(due) < 2.0 * ripple.lost_below_rad;
     let end = |end| Verdict::Ends(if near_noise { RunEnd::LostInNoise } else { end });
     let period = next.duration_s() / half_period_s(chain);
     if (period - 1.0).abs() > period_tolerance(next, ripple) {
@@ -119,10 +119,13 @@ pub(super) fn judge(
     if let [first, second] = chain {
         let first_ratio = second.amplitude_rad() / first.amplitude_rad();
         let first_period = second.duration_s() / first.duration_s();
-        let (rise, change) = if rocked { (ROCKED_RISE, ROCKED_CHANGE) } else { (RATIO_RISE, 1.0) };
-        if first_ratio > ratio + rise + 1.5 * tolerance
-            || (first_period - 1.0).abs() > change + tolerance
-        {
+        let pushed = if rocked {
+            1.0 - first_ratio < ROCKED_FALL * (1.0 - ratio) - 0.5 * tolerance
+                || (first_period - 1.0).abs() > ROCKED_CHANGE + tolerance
+        } else {
+            first_ratio > ratio + RATIO_RISE + 1.5 * tolerance
+        };
+        if pushed {
             return Verdict::DropsFirst;
         }
     }
@@ -150,7 +153,10 @@ pub(super) fn due_rad(chain: &[HalfCycle]) -> f64 {
 /// logarithms of its last amplitudes.
 pub(super) fn lost_s(chain: &[HalfCycle], ripple: Ripple) -> f64 {
     let Some(last) = chain.last() else { return f64::NEG_INFINITY };
-    let recent = &chain[chain.len().saturating_sub(8)..];
+    // Far above the noise the logarithm is no line.
+    let n_low = chain.iter().rev().take_while(|h| h.amplitude_rad() < 5.0 * ripple.lost_below_rad);
+    let n_low = n_low.count().clamp(3, 8);
+    let recent = &chain[chain.len().saturating_sub(n_low)..];
     let points = || {
         let middle = |h: &HalfCycle| 0.5 * (h.start.left_s + h.end.time_s) - last.end.time_s;
         recent.iter().map(move |h| (middle(h), h.amplitude_rad().ln()))

@@ -78,13 +78,13 @@ pub(super) fn settled(cycles: &[Cycle], is_recorded: bool, ripple: Ripple) -> Op
         || !is_flat
         || period_trend.abs() > TREND + 0.5 * noise
         || !last.iter().all(|c| within(c, SPREAD))
+        || !last[1..].iter().all(|c| same_drive(c, level))
     {
         return None;
     }
+    // The drive of a half cycle is that of the full cycle which ends with the next one.
     let mut start = from;
-    while start > 0
-        && within(&cycles[start - 1], START_SPREAD)
-        && same_drive(&cycles[start - 1], level)
+    while start > 0 && within(&cycles[start - 1], START_SPREAD) && same_drive(&cycles[start], level)
     {
         start -= 1;
     }
@@ -103,7 +103,22 @@ pub(super) fn continues(run: &[Cycle], next: &Cycle, ripple: Ripple) -> bool {
         && same_drive(next, recent)
 }
 
-/// Mean amplitude, half period and drive.
+/// Number of half cycles at the start of `run` whose amplitude `next` has crept away from while
+/// the drive stayed the same, as the answer to a moment does.
+pub(super) fn n_crept_from(run: &[Cycle], next: &Cycle, ripple: Ripple) -> usize {
+    let recent = level(&run[run.len().saturating_sub(8)..]);
+    if recent.drive.is_none() || !same_drive(next, recent) || !same_drive(&run[0], recent) {
+        return 0;
+    }
+    let spread = 2.0 * CHANGED + ripple.ratio_tolerance(recent.amplitude_rad);
+    let off = |k: &usize| {
+        let first = level(&run[*k..(k + 8).min(run.len())]);
+        (next.half.amplitude_rad() / first.amplitude_rad - 1.0).abs() > spread
+    };
+    (0..run.len().saturating_sub(N_SETTLED)).take_while(off).count()
+}
+
+/// Mean amplitude and half period, median drive.
 #[derive(Debug, Clone, Copy)]
 struct Level {
     amplitude_rad: f64,
@@ -118,8 +133,9 @@ fn level(cycles: &[Cycle]) -> Level {
         [first, .., last] => (last.half.end.time_s - first.half.start.time_s) / n,
         _ => cycles.first().map_or(0.0, |c| c.half.duration_s()),
     };
-    let drives: Vec<f64> = cycles.iter().filter_map(|c| c.drive).map(|d| d.amplitude).collect();
-    let drive = (!drives.is_empty()).then(|| drives.iter().sum::<f64>() / drives.len() as f64);
+    let mut drives: Vec<f64> = cycles.iter().filter_map(|c| c.drive).map(|d| d.amplitude).collect();
+    drives.sort_by(f64::total_cmp);
+    let drive = drives.get(drives.len() / 2).copied();
     Level { amplitude_rad, half_period_s, drive }
 }
 

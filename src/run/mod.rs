@@ -16,6 +16,7 @@ mod passed_over;
 mod records;
 mod track;
 mod unused;
+mod usable_end;
 
 pub use finder::RunFinder;
 pub use limits::Limits;

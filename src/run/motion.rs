@@ -11,9 +11,12 @@ use super::decay::Verdict;
 use super::forced;
 use super::forced::Cycle;
 use super::half_cycles::HalfCycle;
+use super::half_cycles::Ripple;
 use super::records::Records;
 use super::unused::Cause;
 use super::unused::Unused;
+use super::usable_end;
+use super::usable_end::Usable;
 
 /// Half cycles remembered while no run is under way.
 const N_REMEMBERED: usize = 48;
@@ -21,9 +24,13 @@ const N_REMEMBERED: usize = 48;
 const RUN_MAX_S: f64 = 1800.0;
 /// Growth of the amplitude that is a blow or a hand, so that what follows is a new start [-].
 const NEW_START: f64 = 1.3;
-/// A stop shows in the roll only some time after it began: so much of a period is dropped before
-/// the roll leaves its decay.
-const DROPPED_BEFORE_DEPARTURE: f64 = 1.0 / 6.0;
+
+/// Amplitude left by a blow against the roll, as a share of that before it; a hand leaves less.
+const STRUCK_SHARE: f64 = 0.5;
+/// A carriage that has just reached its speed jolts the model for this long [s].
+const JOLT_S: f64 = 1.0;
+/// Why no decay begins after a hand.
+const TOUCHED: &str = "the roll after a touch is not free without another release";
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum State {
@@ -39,6 +46,8 @@ pub(super) struct Motion {
     state: State,
     /// Half cycles of the run under way, or the last ones.
     cycles: Vec<Cycle>,
+    /// The half cycles before the run under way.
+    before: Vec<Cycle>,
     /// Half cycles after a forced run that may be a single outlier.
     doubtful: Vec<Cycle>,
     unused: Option<Unused>,
@@ -46,8 +55,14 @@ pub(super) struct Motion {
     distrust: Option<&'static str>,
     /// The pass ended while the model rolled.
     pass_ended: bool,
-    /// A hand rocked the model up to the decay under way.
-    rocked: bool,
+    /// The model has rolled otherwise since it was last still.
+    stirred: bool,
+    /// Amplitude of the last decay when something touched the model [rad].
+    touched_rad: f64,
+    /// Half cycles at the start of the decay on which the hand that rocked it up may still be.
+    n_drops_left: usize,
+    /// When the rod let the model go [s].
+    rod_left_s: Option<f64>,
     /// The rod drove the model, and still may.
     rod_on: bool,
 }
@@ -138,7 +153,7 @@ impl Motion {
     }
 
     fn search(&mut self, cycle: Cycle, closer: &mut Closer) {
-        self.trust_or_not(&cycle);
+        self.trust_or_not(&cycle, closer.records);
         let distrust = self.distrust;
         self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle, distrust)).extend(&cycle);
         if !cycle.is_driven() {
@@ -157,19 +172,26 @@ impl Motion {
         } else if self.distrust.is_none()
             && let Some(start) = self.decay_start(closer)
         {
-            self.rocked = decay::is_rocked_up(&self.halves(), start);
+            self.n_drops_left = if decay::is_rocked_up(&self.halves(), start) { 2 } else { 0 };
             self.begin(State::Decay, start, closer);
         }
     }
 
     /// Notes what makes a decay doubtful, and forgets it at a new start.
-    fn trust_or_not(&mut self, cycle: &Cycle) {
+    fn trust_or_not(&mut self, cycle: &Cycle, records: &Records) {
         let Some(before) = self.cycles.last() else { return };
         let growth = cycle.half.amplitude_rad() / before.half.amplitude_rad();
         let steady = before.steady && cycle.steady;
-        if growth > 1.06 && !steady {
+        let jolted = records.carriage.steady_for_s(before.half.start.time_s) < JOLT_S;
+        if growth > 1.06 && (!steady || jolted) {
             self.distrust = Some("the roll was still disturbed by the change of speed");
-        } else if steady && self.cycles.len() > 1 && growth > NEW_START
+        } else if self.distrust == Some(TOUCHED)
+            && self.cycles.len() > 1
+            && cycle.half.amplitude_rad() >= STRUCK_SHARE * self.touched_rad
+        {
+            // A hand that stays would have taken more: this was a blow against the roll.
+            self.distrust = None;
+        } else if steady && !jolted && self.cycles.len() > 1 && growth > NEW_START
             || cycle.steady && cycle.half.is_from_hold()
         {
             self.distrust = None;
@@ -178,9 +200,12 @@ impl Motion {
 
     fn begin(&mut self, state: State, start: usize, closer: &mut Closer) {
         self.state = state;
-        self.cycles.drain(..start);
-        let start_s = self.cycles[0].half.start.time_s;
-        self.flush(start_s, closer);
+        self.before.clear();
+        self.before.extend(self.cycles.drain(..start));
+        self.stirred |= start > 0;
+        if state == State::Forced {
+            self.flush(self.cycles[0].half.start.time_s, closer);
+        }
     }
 
     /// Index of the first of the last half cycles that fall one after the other without a drive.
@@ -204,7 +229,7 @@ impl Motion {
         let grabbed = driven(&cycle)
             && self.cycles.last().is_some_and(driven)
             && !forced::drive_follows_decay(&self.cycles);
-        let verdict = decay::judge(&halves, &cycle.half, ripple, self.rocked);
+        let verdict = decay::judge(&halves, &cycle.half, ripple, self.n_drops_left > 0);
         match verdict {
             _ if grabbed => {
                 let end_s = self.cycles.last().map_or(0.0, |c| c.half.start.time_s);
@@ -213,7 +238,8 @@ impl Motion {
             }
             Verdict::Continues => self.cycles.push(cycle),
             Verdict::DropsFirst => {
-                self.cycles.remove(0);
+                self.n_drops_left = self.n_drops_left.saturating_sub(1);
+                self.before.push(self.cycles.remove(0));
                 self.cycles.push(cycle);
             }
             Verdict::Ends(end) => {
@@ -228,21 +254,23 @@ impl Motion {
 
     /// Without a drive channel a sustained roll is known only by its amplitude.
     fn notice_steady_roll(&mut self, closer: &mut Closer) {
+        if self.state != State::Decay {
+            return;
+        }
         let ripple = closer.records.ripple();
-        if self.state == State::Decay
-            && let Some(start) = forced::settled(&self.cycles, false, ripple)
-        {
+        let all: Vec<Cycle> = self.before.iter().chain(&self.cycles).copied().collect();
+        if let Some(start) = forced::settled(&all, false, ripple) {
             let first = self.cycles[0];
-            self.unused.get_or_insert_with(|| Unused::from_cycle(&first, None));
-            for cycle in &self.cycles[..start] {
-                self.unused.iter_mut().for_each(|unused| unused.extend(cycle));
-            }
+            let unused = self.unused.get_or_insert_with(|| Unused::from_cycle(&first, None));
+            all[..start].iter().skip(self.before.len()).for_each(|cycle| unused.extend(cycle));
+            self.cycles = all;
             self.begin(State::Forced, start, closer);
         }
     }
 
     fn forced(&mut self, cycle: Cycle, closer: &mut Closer) {
         let ripple = closer.records.ripple();
+        self.leave_start_up(&cycle, ripple, closer);
         if forced::continues(&self.cycles, &cycle, ripple) {
             self.cycles.append(&mut self.doubtful);
             self.cycles.push(cycle);
@@ -259,6 +287,17 @@ impl Motion {
         }
     }
 
+    /// Moves the start of a run forward while its amplitude still creeps under the same drive.
+    fn leave_start_up(&mut self, cycle: &Cycle, ripple: Ripple, closer: &mut Closer) {
+        let n = forced::n_crept_from(&self.cycles, cycle, ripple);
+        if n > 0 {
+            let first = self.cycles[0];
+            let unused = self.unused.get_or_insert_with(|| Unused::from_cycle(&first, None));
+            self.cycles.drain(..n).for_each(|cycle| unused.extend(&cycle));
+            self.flush(self.cycles[0].half.start.time_s, closer);
+        }
+    }
+
     /// Ends the run under way for the reason `end` at `end_s` at the latest.
     fn close(&mut self, end: RunEnd, end_s: f64, closer: &mut Closer) {
         let kind = if self.state == State::Forced { RunKind::Forced } else { RunKind::Decay };
@@ -272,21 +311,34 @@ impl Motion {
         }
         let Some(first) = cycles.first() else { return };
         let start_s = match kind {
-            RunKind::Decay => decay::start_s(&first.half, &closer.records.roll, ripple),
+            RunKind::Decay => decay::start_s(&first.half, &closer.records.roll, ripple)
+                .max(self.rod_left_s.take().unwrap_or(f64::NEG_INFINITY)),
             RunKind::Forced => first.half.start.time_s,
         };
+        let Usable { end, end_s, left_s, why } =
+            usable_end::find(closer.records, kind, &cycles, (end, end_s));
+        let touched = matches!(end, RunEnd::Caught | RunEnd::ReStruck);
+        let between_touches = self.stirred && touched && !first.half.is_from_hold();
+        let stretch = Stretch { kind, start_s, end_s, end, cycles: &cycles, between_touches };
+        self.stirred = true;
+        if between_touches && self.unused.is_some() && stretch.is_too_short() {
+            // Irregular roll is one rejection, not a hundred.
+            self.state = State::Searching;
+            self.unused.iter_mut().for_each(|u| cycles.iter().for_each(|c| u.extend(c)));
+            return;
+        }
         self.flush(start_s, closer);
-        let (end, end_s, why) = closer.usable_end(kind, &cycles, end, end_s);
-        let stretch = Stretch { kind, start_s, end_s, end, cycles: &cycles };
         let event = stretch.close(closer.records, closer.limits);
         closer.events.push(event);
         self.rod_on = kind == RunKind::Forced;
+        self.rod_left_s = left_s.filter(|_| self.rod_on);
         self.pass_ended |= end == RunEnd::PassEnded;
         self.distrust = match end {
-            RunEnd::Caught => Some("the roll after a touch is not free without another release"),
+            RunEnd::Caught => Some(TOUCHED),
             RunEnd::PassEnded => Some("the roll was still disturbed by the change of speed"),
             _ => None,
         };
+        self.touched_rad = cycles.last().map_or(0.0, |c| c.half.amplitude_rad());
         self.state = State::Searching;
         self.unused = Some(Unused::new(end_s, Cause::After(end, why)));
         for cycle in cycles.iter().chain(&self.doubtful).filter(|c| c.half.end.time_s > end_s) {
@@ -307,59 +359,4 @@ struct Closer<'a> {
     records: &'a Records,
     limits: &'a Limits,
     events: &'a mut Vec<Event>,
-}
-
-impl Closer<'_> {
-    /// Why and when the stretch of `cycles` really ends, at `end_s` at the latest, and a sentence
-    /// about it.
-    fn usable_end(
-        &self,
-        kind: RunKind,
-        cycles: &[Cycle],
-        end: RunEnd,
-        end_s: f64,
-    ) -> (RunEnd, f64, String) {
-        let records = self.records;
-        let ripple = records.ripple();
-        let halves: Vec<HalfCycle> = cycles.iter().map(|c| c.half).collect();
-        let last_s = halves.last().map_or(end_s, |h| h.end.time_s);
-        let half_s = decay::half_period_s(&halves);
-        let known_end = matches!(
-            end,
-            RunEnd::Gap | RunEnd::PassEnded | RunEnd::RecordingEnded | RunEnd::TooLong
-        );
-        if end == RunEnd::LostInNoise {
-            let lost_s = decay::lost_s(&halves, ripple).min(end_s);
-            return (end, lost_s, format!("{} at {lost_s:.1} s", end.clause()));
-        }
-        let departure_s = match kind {
-            RunKind::Decay => decay::departure_s(&halves, &records.roll, ripple, end_s),
-            RunKind::Forced => {
-                let roll = forced::departure_s(cycles, &records.roll, ripple.sd_rad, end_s);
-                let drive =
-                    forced::departure_s(cycles, &records.drive.track, records.drive.sd(), end_s);
-                [roll, drive].into_iter().flatten().reduce(f64::min)
-            }
-        };
-        let Some(left_s) = departure_s else {
-            let until_s = if known_end { end_s } else { last_s.min(end_s) };
-            return (end, until_s, format!("{} at {until_s:.1} s", end.clause()));
-        };
-        let latest_s = left_s - 2.0 * DROPPED_BEFORE_DEPARTURE * half_s;
-        let turns = halves.iter().rev().map(|h| h.end.time_s);
-        let until_s = turns.chain(halves.first().map(|h| h.start.left_s));
-        let turn_s = until_s.into_iter().find(|&t| t <= latest_s).unwrap_or(latest_s);
-        let until_s = turn_s.max(left_s - half_s);
-        let end = match (end, kind) {
-            (RunEnd::Gap | RunEnd::PassEnded | RunEnd::RecordingEnded, RunKind::Decay) => {
-                RunEnd::Caught
-            }
-            (RunEnd::Gap | RunEnd::PassEnded | RunEnd::RecordingEnded, RunKind::Forced) => {
-                RunEnd::ExcitationChanged
-            }
-            (other, _) => other,
-        };
-        let clause = end.clause();
-        (end, until_s, format!("{clause}: the roll left its course at {left_s:.1} s"))
-    }
 }

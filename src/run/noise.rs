@@ -32,8 +32,8 @@ impl<const BLOCK_LENGTH: usize> Default for Noise<BLOCK_LENGTH> {
 
 /// Noise of bins, known after a second.
 pub(super) type BinNoise = Noise<20>;
-/// Noise of samples, known to some 4 %.
-pub(super) type SampleNoise = Noise<200>;
+/// Noise of samples, known to some 5 %.
+pub(super) type SampleNoise = Noise<100>;
 
 impl<const BLOCK_LENGTH: usize> Noise<BLOCK_LENGTH> {
     /// Takes the next value.

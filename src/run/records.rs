@@ -57,7 +57,7 @@ impl Records {
         let step_sd_rad = quantum_rad / 12.0_f64.sqrt();
         // A vibration is noise of the bins more than of the samples; of a channel so slow that
         // each bin is one sample the bins' estimate is the quicker one.
-        let fine = self.roll.has_bins_of_many();
+        let fine = self.roll.averages();
         let sample_sd_rad = if fine { self.sample_noise.sd() } else { 0.0 };
         Ripple {
             sd_rad: SMOOTHED * self.bin_noise.sd(),

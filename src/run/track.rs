@@ -53,9 +53,9 @@ impl Track {
         bin
     }
 
-    /// Whether a bin holds more than two samples.
-    pub(super) fn has_bins_of_many(&self) -> bool {
-        3.0 * self.interval_s < super::bins::WIDTH_S
+    /// Whether a bin holds more than one sample.
+    pub(super) fn averages(&self) -> bool {
+        self.interval_s < super::bins::WIDTH_S
     }
 
     /// Starts a new bin, because the next sample does not follow the last one.

@@ -1,0 +1,91 @@
+//! Finds the last usable instant of a run whose end has been noticed.
+
+use super::RunEnd;
+use super::RunKind;
+use super::decay;
+use super::forced;
+use super::forced::Cycle;
+use super::half_cycles::HalfCycle;
+use super::half_cycles::Ripple;
+use super::records::Records;
+
+/// A stop shows in the roll only some time after it began: so much of a period is dropped before
+/// the roll leaves its decay.
+const DROPPED: f64 = 1.0 / 6.0;
+/// Greatest part of a period dropped to end on a turning point.
+const DROPPED_MAX: f64 = 0.45;
+
+/// Why and when a run really ends.
+#[derive(Debug)]
+pub(super) struct Usable {
+    /// Why.
+    pub(super) end: RunEnd,
+    /// Last usable instant [s].
+    pub(super) end_s: f64,
+    /// When the motion left its course [s], where it did.
+    pub(super) left_s: Option<f64>,
+    /// The same as a sentence.
+    pub(super) why: String,
+}
+
+/// The end of the run of `cycles` that was noticed as `(why, when)`; the usable end may be earlier
+/// and for another reason.
+pub(super) fn find(
+    records: &Records,
+    kind: RunKind,
+    cycles: &[Cycle],
+    (end, end_s): (RunEnd, f64),
+) -> Usable {
+    let ripple = records.ripple();
+    let halves: Vec<HalfCycle> = cycles.iter().map(|c| c.half).collect();
+    let at = |end: RunEnd, end_s: f64| {
+        let why = format!("{} at {end_s:.1} s", end.clause());
+        Usable { end, end_s, left_s: None, why }
+    };
+    let last_s = halves.last().map_or(end_s, |h| h.end.time_s);
+    let is_instant =
+        matches!(end, RunEnd::Gap | RunEnd::PassEnded | RunEnd::RecordingEnded | RunEnd::TooLong);
+    let until_s = if is_instant { end_s } else { last_s.min(end_s) };
+    let half_s = decay::half_period_s(&halves);
+    let lost_s = decay::lost_s(&halves, ripple);
+    if end == RunEnd::LostInNoise {
+        return at(end, lost_s.min(end_s));
+    }
+    let Some(left_s) = departure_s(records, kind, cycles, &halves, ripple, end_s) else {
+        let fades = kind == RunKind::Decay && is_instant && lost_s < last_s + half_s;
+        return if fades && lost_s < until_s {
+            at(RunEnd::LostInNoise, lost_s)
+        } else {
+            at(end, until_s)
+        };
+    };
+    let latest_s = left_s - 2.0 * DROPPED * half_s;
+    let first_s = halves.first().map(|h| h.start.left_s);
+    let mut turns = halves.iter().rev().map(|h| h.end.time_s).chain(first_s);
+    let turn_s = turns.find(|&t| t <= latest_s).unwrap_or(latest_s);
+    let end = match (is_instant, kind) {
+        (false, _) => end,
+        (true, RunKind::Decay) => RunEnd::Caught,
+        (true, RunKind::Forced) => RunEnd::ExcitationChanged,
+    };
+    let why = format!("{}: the roll left its course at {left_s:.1} s", end.clause());
+    let end_s = turn_s.max(left_s - 2.0 * DROPPED_MAX * half_s);
+    Usable { end, end_s, left_s: Some(left_s), why }
+}
+
+fn departure_s(
+    records: &Records,
+    kind: RunKind,
+    cycles: &[Cycle],
+    halves: &[HalfCycle],
+    ripple: Ripple,
+    end_s: f64,
+) -> Option<f64> {
+    if kind == RunKind::Decay {
+        return decay::departure_s(halves, &records.roll, ripple, end_s);
+    }
+    let drive = &records.drive;
+    let roll_s = forced::departure_s(cycles, &records.roll, ripple.sd_rad, end_s);
+    let drive_s = forced::departure_s(cycles, &drive.track, drive.sd(), end_s);
+    [roll_s, drive_s].into_iter().flatten().reduce(f64::min)
+}
