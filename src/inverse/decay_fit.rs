@@ -1,7 +1,7 @@
 //! Damping coefficients of a decay: the equation of rolling fitted to the record.
 //!
-//! The law of Sec. 4.1 projected on `U` through the likelihood is the law fitted to the roll itself,
-//! so that 500 correlated moments are not counted as 500 observations. Where the law leaves nothing
+//! The law of Sec. 4.1 projected on `U` through the likelihood is the law fitted to the roll
+//! itself, so that 500 correlated moments are not counted as 500 observations. Where the law leaves nothing
 //! but noise, the posterior is that of least squares. Where it leaves more, which the evidence of a
 //! walking moment (2.10) beside the law tells, the covariance is that of least squares under the
 //! residual's own correlation (Newey and West, Econometrica 55, 1987), and so is wider.
@@ -293,7 +293,8 @@ fn sum_of_squares(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
 }
 
 /// What correlation between samples adds to the covariance of the scores `J_t r_t`, with Bartlett's
-/// weights up to the lag that the scores' own persistence asks for (Andrews, Econometrica 59, 1991).
+/// weights up to the lag that the scores' own persistence asks for (Andrews, Econometrica 59,
+/// 1991).
 fn correlated_scores(columns: &[Vec<f64>], residual_rad: &[f64]) -> Vec<Vec<f64>> {
     // Sums over a few samples carry the correlation at a fraction of the cost.
     let width = (residual_rad.len() / 1000).max(1);

@@ -1,4 +1,4 @@
-//! Finding runs in the stream: samples are pushed in, runs and rejections come out, no clock is read.
+//! Finding runs in the stream: samples go in, runs and rejections come out, no clock is read.
 
 mod assembly;
 mod bins;
@@ -88,7 +88,7 @@ pub struct Run {
     pub speed_m_s: Option<f64>,
     /// Roll [rad] from `start_s` to `end_s`.
     pub roll: Series,
-    /// Rod force [N] or exciting moment [N m] as recorded, over the same stretch; empty without one.
+    /// Rod force [N] or exciting moment [N m] as recorded over the same stretch, or empty.
     pub drive: Series,
     /// The still stretch before the run, when there was one.
     pub still: Option<Still>,
