@@ -1,7 +1,7 @@
 //! Damping coefficients of a decay: the equation of rolling fitted to the record.
 //!
-//! The law of Sec. 4.1 projected on `U` through the likelihood is the law fitted to the roll
-//! itself, so that 500 correlated moments are not counted as 500 observations. Where the law leaves nothing
+//! The law of Sec. 4.1 projected on `U` through the likelihood is the law fitted to the roll itself,
+//! so that 500 correlated moments are not counted as 500 observations. Where the law leaves nothing
 //! but noise, the posterior is that of least squares. Where it leaves more, which the evidence of a
 //! walking moment (2.10) beside the law tells, the covariance is that of least squares under the
 //! residual's own correlation (Newey and West, Econometrica 55, 1987), and so is wider.
@@ -241,7 +241,8 @@ impl Fit<'_> {
             Vec::new()
         };
         let positions: Vec<usize> = self.active().collect();
-        // (R'R)^-1 s^2 where the residual is noise, (R'R)^-1 S (R'R)^-1 where it is not.
+        // (R'R)^-1 s^2 where the residual is noise; where it is not, (R'R)^-1 S (R'R)^-1 on top,
+        // because S is itself estimated from few independent stretches and may come out small.
         let bread = sum_of_squares(&inverse);
         for (i, &p) in positions.iter().enumerate() {
             for (j, &q) in positions.iter().enumerate() {
@@ -292,9 +293,8 @@ fn sum_of_squares(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
 
-/// What correlation between samples adds to the covariance of the scores `J_t r_t`, with Bartlett's
-/// weights up to the lag that the scores' own persistence asks for (Andrews, Econometrica 59,
-/// 1991).
+/// The covariance of the scores `J_t r_t` with what correlation between samples adds, by Bartlett's
+/// weights up to the lag that the scores' own persistence asks for (Andrews, Econometrica 59, 1991).
 fn correlated_scores(columns: &[Vec<f64>], residual_rad: &[f64]) -> Vec<Vec<f64>> {
     // Sums over a few samples carry the correlation at a fraction of the cost.
     let width = (residual_rad.len() / 1000).max(1);
@@ -318,8 +318,9 @@ fn correlated_scores(columns: &[Vec<f64>], residual_rad: &[f64]) -> Vec<Vec<f64>
     let bandwidth = 1.1447 * (4.0 * above / below * n as f64).cbrt();
     let last = (bandwidth as usize).min(n / 4);
     let mut sum = vec![vec![0.0; scores.len()]; scores.len()];
-    for lag in 1..=last {
-        let weight = 1.0 - lag as f64 / (last + 1) as f64;
+    for lag in 0..=last {
+        let share = if lag == 0 { 0.5 } else { 1.0 };
+        let weight = share * (1.0 - lag as f64 / (last + 1) as f64);
         for (i, a) in scores.iter().enumerate() {
             for (j, b) in scores.iter().enumerate() {
                 let ahead = weight * lagged(a, b, lag);
