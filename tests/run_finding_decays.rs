@@ -1,6 +1,6 @@
 //! Decays of the simulated tank are found where they are.
 
-use super::run_finding_scene::{AT_REST, ON_THE_ROD, Scene, UNDER_WAY};
+use super::run_finding_scene::{AT_REST, LIMITS, ON_THE_ROD, Scene, UNDER_WAY, find};
 
 /// Rest, held heel, release; `then` follows.
 fn released(heel_deg: f64, free_s: f64, then: &str) -> String {
@@ -199,7 +199,7 @@ fn a_hole_ends_the_decay() {
 fn a_few_lost_samples_do_not_end_the_decay() {
     let pass = "froude = 0.0\ngap = [ { start_s = 14.0, duration_s = 0.06 } ]";
     let played = Scene { pass, ..AT_REST }.play(&released(12.0, 12.0, ""));
-    let found = super::run_finding_scene::find(&played, super::run_finding_scene::LIMITS);
+    let found = find(&played, LIMITS);
     assert_eq!(found.runs.len(), 1);
     assert!(found.runs[0].end_s > 20.9, "{}", found.runs[0].end_s);
 }
@@ -241,7 +241,7 @@ fn vibration_of_the_carriage_does_not_hide_the_decay() {
 fn two_half_cycles_are_too_few() {
     let then = "{ catch = { duration_s = 4.0 } }";
     let played = AT_REST.play(&released(10.0, 1.0, then));
-    let found = super::run_finding_scene::find(&played, super::run_finding_scene::LIMITS);
+    let found = find(&played, LIMITS);
     found.print();
     assert!(found.runs.is_empty());
     found.rejected_for("at least 3 are needed");
@@ -250,4 +250,11 @@ fn two_half_cycles_are_too_few() {
 #[test]
 fn a_decay_with_the_load_cell_hanging_free_is_no_forced_run() {
     ON_THE_ROD.check(&released(10.0, 20.0, ""));
+}
+
+#[test]
+fn bilge_keels_at_speed_leave_two_periods() {
+    let keels = Scene { model: (6.136, 3.2, 0.67), ..AT_REST };
+    keels.check(&released(20.0, 8.0, ""));
+    keels.check(&released(14.0, 8.0, ""));
 }

@@ -10,7 +10,7 @@ use super::run_finding_scene::{AT_REST, Found, LIMITS, Scene, UNDER_WAY, find, f
 /// A roll record [deg] of 200 s with noise, and nothing else.
 fn record(rate_hz: f64, noise_deg: f64, roll_deg: impl Fn(f64) -> f64) -> Found {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(11);
-    let noise = Normal::new(0.0, noise_deg).unwrap();
+    let noise = Normal::new(0.0, noise_deg).expect("the noise is positive");
     let samples: Vec<Sample> = (0..(200.0 * rate_hz) as usize)
         .map(|k| {
             let time_s = k as f64 / rate_hz;

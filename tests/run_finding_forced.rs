@@ -1,6 +1,9 @@
 //! Forced runs of the simulated tank are found where they are.
 
-use super::run_finding_scene::{AT_REST, ON_THE_ROD, Scene, UNDER_WAY};
+use devices::Quantity;
+use rolltank::run::RunKind;
+
+use super::run_finding_scene::{AT_REST, LIMITS, ON_THE_ROD, Scene, UNDER_WAY, find, find_in};
 
 const IMPOSED: &str = "{ rest = { duration_s = 10.0 } }, \
     { forced = { amplitude_deg = 8.0, frequency_rad_s = 5.12, duration_s = 20.0 } }";
@@ -97,7 +100,7 @@ fn a_forced_roll_that_began_before_the_carriage_is_used_at_steady_speed() {
     let pass = "froude = 0.2\ncarriage = { start_s = 16.0 }";
     let actions = IMPOSED.replace("20.0 }", "40.0 }");
     let played = Scene { pass, ..UNDER_WAY }.play(&actions);
-    let found = super::run_finding_scene::find(&played, super::run_finding_scene::LIMITS);
+    let found = find(&played, LIMITS);
     found.print();
     // Steady from 16 s + 0.99 m/s / 0.5 m/s2.
     let last = found.runs.last().expect("a run at steady speed");
@@ -120,6 +123,29 @@ fn a_slow_forced_roll_is_found() {
     let slow = Scene { model: (1.2, 0.06, 0.5), ..ON_THE_ROD };
     slow.check(
         "{ rest = { duration_s = 20.0 } }, \
-         { forced = { amplitude_deg = 5.0, frequency_rad_s = 0.9, duration_s = 90.0, ramp_s = 8.0 } }",
+         { forced = { amplitude_deg = 5.0, frequency_rad_s = 0.9, duration_s = 90.0, \
+         ramp_s = 8.0 } }",
     );
+}
+
+#[test]
+fn crosstalk_of_the_roll_into_the_force_does_not_make_a_decay_forced() {
+    let played = ON_THE_ROD.play(
+        "{ rest = { duration_s = 6.0 } }, { hold = { heel_deg = 12.0, duration_s = 4.0 } }, \
+         { release = { duration_s = 20.0 } }",
+    );
+    let mut samples = played.samples;
+    let mut roll_rad = 0.0;
+    for sample in &mut samples {
+        match sample.quantity {
+            Quantity::Roll => roll_rad = sample.value,
+            // Ten times what is known of load cells, so that it cannot be missed.
+            _ => sample.value += 20.0 * roll_rad,
+        }
+    }
+    let found = find_in(&samples, LIMITS);
+    found.print();
+    assert_eq!(found.runs.len(), 1);
+    assert_eq!(found.runs[0].kind, RunKind::Decay);
+    assert!((found.runs[0].start_s - 10.0).abs() < 0.5 && found.runs[0].end_s > 29.0);
 }

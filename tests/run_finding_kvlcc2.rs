@@ -18,7 +18,8 @@ fn measured(file: &str) -> Option<Vec<Sample>> {
     let mut rows = text.lines();
     assert_eq!(rows.next(), Some("time,x,y,z,phi,theta,psi"));
     let sample = |row: &str| {
-        let fields: Vec<f64> = row.split(',').map(|field| field.parse().unwrap()).collect();
+        let fields: Vec<f64> =
+            row.split(',').map(|field| field.parse().expect("a number")).collect();
         Sample { quantity: Quantity::Roll, time_s: fields[0], value: fields[4] }
     };
     Some(rows.map(sample).collect())

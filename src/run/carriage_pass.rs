@@ -26,6 +26,7 @@ const N_STEADY: usize = 16;
 
 /// A stretch of steady speed, rest included.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::struct_field_names, reason = "the units end alike")]
 struct Steady {
     start_s: f64,
     end_s: Option<f64>,
@@ -194,6 +195,21 @@ mod tests {
         let Passage::Ends(end_s) = carriage.passage(6.0, 21.0) else { panic!("braking is missed") };
         assert!((end_s - 20.0).abs() < 0.1, "{end_s} s");
         assert_eq!(carriage.passage(22.3, 24.0), Passage::Steady);
+    }
+
+    #[test]
+    fn a_speed_that_settles_and_wobbles_is_steady() {
+        let mut carriage = CarriagePass::default();
+        for k in 0..2000 {
+            let t = f64::from(k) * 0.02;
+            let settling = 1.0 - 0.1 * (-0.5 * (t - 6.0)).exp();
+            let wobble = 0.02 * (1.5 * t).sin();
+            let speed = if t < 4.0 { 0.0 } else { (0.45 * (t - 4.0)).min(settling + wobble) };
+            carriage.push(t, speed);
+        }
+        // The last 10 % come with a time constant of 2 s; the wobble of 2 % stays.
+        assert_eq!(carriage.passage(9.0, 39.0), Passage::Steady);
+        assert_eq!(carriage.passage(5.0, 5.5), Passage::Changing);
     }
 
     #[test]

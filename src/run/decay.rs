@@ -176,14 +176,13 @@ pub(super) fn lost_s(chain: &[HalfCycle], ripple: Ripple) -> f64 {
 
 /// Half period [s] of the last half cycles.
 pub(super) fn half_period_s(chain: &[HalfCycle]) -> f64 {
-    match chain {
-        // The first half cycle may begin with a hold.
-        [only] => only.duration_from_hold_s(),
-        _ => {
-            let recent = &chain[1.max(chain.len().saturating_sub(3))..];
-            recent.iter().map(HalfCycle::duration_s).sum::<f64>() / recent.len() as f64
-        }
+    let [first, rest @ ..] = chain else { return 0.0 };
+    if rest.is_empty() {
+        // It may begin with a hold.
+        return first.duration_from_hold_s();
     }
+    let recent = &rest[rest.len().saturating_sub(3)..];
+    recent.iter().map(HalfCycle::duration_s).sum::<f64>() / recent.len() as f64
 }
 
 /// Noise moves a turning point by some `sd / amplitude` radian of phase.

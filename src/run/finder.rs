@@ -18,8 +18,8 @@ use super::records::Records;
 
 /// Samples kept per channel: beyond it a run is closed, so that memory stays within some 100 MB.
 const N_SAMPLES_MAX: usize = 2_000_000;
-/// Longest time [s] that the roll waits for a speed channel that lags behind or has stopped.
-const SPEED_WAIT_S: f64 = 4.0;
+/// Longest time [s] that the roll waits for a channel that lags behind or has stopped.
+const WAIT_MAX_S: f64 = 4.0;
 /// Share of a half period up to which a hole in the roll does not end a run.
 const HOLE_SHARE: f64 = 0.25;
 
@@ -121,20 +121,18 @@ impl RunFinder {
         }
     }
 
-    /// Passes on what the roll did as soon as it is known how the carriage moved then.
+    /// Passes on what the roll did as soon as it is known how carriage and rod moved then.
     fn settle(&mut self, events: &mut Vec<Event>) {
         while let Some(swing) = self.waiting.front() {
             let at_s = match swing {
                 Swing::Half(half) => half.end.time_s,
                 Swing::Quiet(at_s) => *at_s,
             };
-            let known = match self.records.carriage.track.last_s() {
-                None => true,
-                Some(speed_s) => {
-                    let roll_s = self.records.roll.last_s().unwrap_or(at_s);
-                    speed_s >= at_s + KNOWN_AFTER_S || roll_s >= at_s + SPEED_WAIT_S
-                }
-            };
+            let waited_s = self.records.roll.last_s().unwrap_or(at_s) - at_s;
+            let behind = |last_s: Option<f64>, needed_s: f64| last_s.is_some_and(|s| s < needed_s);
+            let known = waited_s >= WAIT_MAX_S
+                || !behind(self.records.carriage.track.last_s(), at_s + KNOWN_AFTER_S)
+                    && !behind(self.records.drive.track.last_s(), at_s);
             if !known {
                 return;
             }
@@ -176,5 +174,86 @@ impl RunFinder {
         let needed = [self.motion.needed_from_s(), waiting_s, turn_s];
         let from_s = needed.into_iter().flatten().fold(now_s - KEPT_S, f64::min);
         self.records.forget_before(from_s);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::RunKind;
+    use super::*;
+
+    const LIMITS: Limits = Limits {
+        carriage_max_speed_m_s: None,
+        declared_speed_m_s: None,
+        length_pp_m: 2.5,
+        gravity_m_s2: 9.81,
+    };
+
+    /// Feeds roll and force at 20 Hz; gives the events and the most samples kept of a channel.
+    fn feed(duration_s: f64, roll_and_force: impl Fn(f64) -> (f64, f64)) -> (Vec<Event>, usize) {
+        let mut finder = RunFinder::new(LIMITS);
+        let (mut events, mut n_most) = (Vec::new(), 0);
+        for k in 0..(duration_s * 20.0) as usize {
+            let time_s = k as f64 * 0.05;
+            let (roll, force) = roll_and_force(time_s);
+            for (quantity, value) in [(Quantity::Roll, roll), (Quantity::Force, force)] {
+                finder.push(&Sample { quantity, time_s, value }, &mut events);
+            }
+            n_most = n_most.max(finder.records.n_samples());
+        }
+        finder.finish(&mut events);
+        (events, n_most)
+    }
+
+    #[test]
+    fn ten_hours_of_rest_are_forgotten() {
+        // Two sines that beat stand for the noise, and the zero drifts by a degree.
+        let (events, n_most) = feed(36_000.0, |t| {
+            (1e-4 * ((97.0 * t).sin() + (311.0 * t).sin()) + 5e-7 * t, 0.01 * (53.0 * t).sin())
+        });
+        assert!(events.is_empty(), "{events:?}");
+        // Twenty seconds at 20 Hz, and what comes in until the next thousand pushes.
+        assert!(n_most < 1500, "{n_most} samples");
+    }
+
+    #[test]
+    fn forced_rolling_without_end_is_closed_at_the_longest_run() {
+        let (events, n_most) =
+            feed(7200.0, |t| (0.1 * (3.0 * t).sin(), 4.0 * (3.0 * t + 0.5).sin()));
+        let runs: Vec<_> = events
+            .iter()
+            .filter_map(|event| match event {
+                Event::Run(run) => Some((run.kind, run.end, run.end_s - run.start_s)),
+                Event::Rejected(_) => None,
+            })
+            .collect();
+        assert_eq!(runs.len(), 4, "{runs:?}");
+        for (kind, end, length_s) in &runs[..3] {
+            assert_eq!((*kind, *end), (RunKind::Forced, RunEnd::TooLong));
+            assert!((1790.0..1810.0).contains(length_s), "{length_s} s");
+        }
+        // Half an hour at 20 Hz.
+        assert!(n_most < 38_000, "{n_most} samples");
+    }
+
+    #[test]
+    fn a_run_is_told_as_soon_as_its_end_is_known() {
+        let mut finder = RunFinder::new(LIMITS);
+        let mut events = Vec::new();
+        let told_s = (0..2000).map(|k| f64::from(k) * 0.02).find(|&time_s| {
+            let free_s = time_s - 5.0;
+            let value = match free_s {
+                ..0.0 => 0.2,
+                0.0..8.0 => 0.2 * (-0.2 * free_s).exp() * (6.0 * free_s).cos(),
+                _ => 0.0,
+            };
+            let ripple = 2e-4 * (97.0 * time_s).sin();
+            let sample = Sample { quantity: Quantity::Roll, time_s, value: value + ripple };
+            finder.push(&sample, &mut events);
+            !events.is_empty()
+        });
+        assert!(matches!(&events[0], Event::Run(run) if run.end == RunEnd::Caught), "{events:?}");
+        // The model is still from 13 s on, which takes two seconds to tell.
+        assert!(told_s.is_some_and(|s| s < 15.5), "{told_s:?}");
     }
 }

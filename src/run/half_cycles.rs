@@ -6,6 +6,7 @@ use super::bins::Bin;
 
 /// What noise and quantum do to the roll.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[expect(clippy::struct_field_names, reason = "the unit is the same")]
 pub(super) struct Ripple {
     /// Standard deviation of a smoothed bin [rad].
     pub(super) sd_rad: f64,
@@ -40,9 +41,11 @@ const FLOOR_RAD: f64 = 0.000_35;
 pub(super) const QUIET_S: f64 = 2.0;
 /// A half cycle longer than this [s] is no roll, so a creeping mean cannot fill the memory.
 const LEG_MAX_S: f64 = 15.0;
-/// The roll must come back by this share of the last swing, so that a vibration on top of a large
-/// roll makes no turning points.
+/// The roll must come back by this share of its swing, so that a vibration on top of a large roll
+/// makes no turning points.
 const SHARE_OF_SWING: f64 = 0.15;
+/// The same of the swing before, of which bilge keels at speed leave a tenth two half cycles later.
+const SHARE_OF_LAST_SWING: f64 = 0.03;
 
 /// Share of a swing by which the roll has clearly left its turning point.
 const LEFT_SHARE: f64 = 0.02;
@@ -187,9 +190,12 @@ impl HalfCycles {
     }
 
     fn turn_round(&mut self, smooth: Bin, ripple: Ripple) -> Option<HalfCycle> {
-        let swing_rad = self.last.map_or(0.0, |h| 2.0 * h.amplitude_rad());
-        let needed_rad = ripple.hysteresis_rad().max(SHARE_OF_SWING * swing_rad);
+        let last_rad = self.last.map_or(0.0, |h| 2.0 * h.amplitude_rad());
         let (low, high) = range(&self.leg_bins);
+        let needed_rad = ripple
+            .hysteresis_rad()
+            .max(SHARE_OF_SWING * (high - low))
+            .max(SHARE_OF_LAST_SWING * last_rad);
         let end = match self.leg {
             Leg::Rising if smooth.value <= high - needed_rad => {
                 self.leg = Leg::Falling;

@@ -97,10 +97,9 @@ fn solve(mut rows: [[f64; 4]; 3]) -> Option<[f64; 3]> {
             return None;
         }
         for i in (0..3).filter(|&i| i != k) {
-            let factor = rows[i][k] / rows[k][k];
-            for j in k..4 {
-                rows[i][j] -= factor * rows[k][j];
-            }
+            let pivot = rows[k];
+            let factor = rows[i][k] / pivot[k];
+            rows[i].iter_mut().zip(pivot).for_each(|(x, p)| *x -= factor * p);
         }
     }
     let x = [rows[0][3] / rows[0][0], rows[1][3] / rows[1][1], rows[2][3] / rows[2][2]];

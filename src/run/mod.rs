@@ -1,4 +1,15 @@
 //! Finding runs in the stream: samples go in, runs and rejections come out, no clock is read.
+//!
+//! Each channel is averaged into bins of a twentieth of a second (`bins`), from which its noise
+//! (`noise`) is known. The roll is cut into half cycles between turning points that stand out of
+//! that noise (`half_cycles`); the speed into steady stretches (`carriage_pass`). A state
+//! machine (`motion`) joins half cycles into a decay as long as `decay` finds each one where
+//! the last ones lead, and into a forced run as long as `forced` finds it steady. When a run has
+//! ended, `usable_end` looks for the instant at which the samples left their course.
+//!
+//! Nothing here reads a clock or a file or draws a number, and what is told depends only on the
+//! samples in their order. Memory is bounded: at rest the last 20 s are kept, and a run is closed
+//! after half an hour or two million samples.
 
 mod assembly;
 mod bins;
@@ -15,6 +26,7 @@ mod noise;
 mod passed_over;
 mod records;
 mod track;
+mod trust;
 mod unused;
 mod usable_end;
 

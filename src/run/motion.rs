@@ -13,6 +13,7 @@ use super::forced::Cycle;
 use super::half_cycles::HalfCycle;
 use super::half_cycles::Ripple;
 use super::records::Records;
+use super::trust::Trust;
 use super::unused::Cause;
 use super::unused::Unused;
 use super::usable_end;
@@ -22,16 +23,6 @@ use super::usable_end::Usable;
 const N_REMEMBERED: usize = 48;
 /// Longest run [s]; a longer one is closed and another begins.
 const RUN_MAX_S: f64 = 1800.0;
-/// Growth of the amplitude that is a blow or a hand, so that what follows is a new start [-].
-const NEW_START: f64 = 1.3;
-
-/// Amplitude left by a blow against the roll, as a share of that before it; a hand leaves less.
-const STRUCK_SHARE: f64 = 0.5;
-/// A carriage that has just reached its speed jolts the model for this long [s].
-const JOLT_S: f64 = 1.0;
-/// Why no decay begins after a hand.
-const TOUCHED: &str = "the roll after a touch is not free without another release";
-
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum State {
     #[default]
@@ -51,14 +42,9 @@ pub(super) struct Motion {
     /// Half cycles after a forced run that may be a single outlier.
     doubtful: Vec<Cycle>,
     unused: Option<Unused>,
-    /// Why no decay can begin until the model is still, held or struck.
-    distrust: Option<&'static str>,
-    /// The pass ended while the model rolled.
-    pass_ended: bool,
+    trust: Trust,
     /// The model has rolled otherwise since it was last still.
     stirred: bool,
-    /// Amplitude of the last decay when something touched the model [rad].
-    touched_rad: f64,
     /// Half cycles at the start of the decay on which the hand that rocked it up may still be.
     n_drops_left: usize,
     /// When the rod let the model go [s].
@@ -126,7 +112,7 @@ impl Motion {
         self.flush(f64::INFINITY, &mut closer);
         *self = Self::default();
         if end == RunEnd::Gap {
-            self.distrust = Some("the roll goes on behind a hole in the record, without a release");
+            self.trust = Trust::behind_hole();
         }
     }
 
@@ -153,8 +139,8 @@ impl Motion {
     }
 
     fn search(&mut self, cycle: Cycle, closer: &mut Closer) {
-        self.trust_or_not(&cycle, closer.records);
-        let distrust = self.distrust;
+        self.trust.note(&self.cycles, &cycle, closer.records);
+        let distrust = self.trust.distrust();
         self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle, distrust)).extend(&cycle);
         if !cycle.is_driven() {
             self.rod_on = false;
@@ -165,36 +151,16 @@ impl Motion {
         }
         let ripple = closer.records.ripple();
         let recorded = closer.records.drive.is_recorded();
-        let spent = self.pass_ended && closer.records.carriage.has_slowed(cycle.half.end.time_s);
-        if spent {
-        } else if let Some(start) = forced::settled(&self.cycles, recorded, ripple) {
+        if self.trust.is_spent(closer.records, cycle.half.end.time_s) {
+            return;
+        }
+        if let Some(start) = forced::settled(&self.cycles, recorded, ripple) {
             self.begin(State::Forced, start, closer);
-        } else if self.distrust.is_none()
+        } else if distrust.is_none()
             && let Some(start) = self.decay_start(closer)
         {
             self.n_drops_left = if decay::is_rocked_up(&self.halves(), start) { 2 } else { 0 };
             self.begin(State::Decay, start, closer);
-        }
-    }
-
-    /// Notes what makes a decay doubtful, and forgets it at a new start.
-    fn trust_or_not(&mut self, cycle: &Cycle, records: &Records) {
-        let Some(before) = self.cycles.last() else { return };
-        let growth = cycle.half.amplitude_rad() / before.half.amplitude_rad();
-        let steady = before.steady && cycle.steady;
-        let jolted = records.carriage.steady_for_s(before.half.start.time_s) < JOLT_S;
-        if growth > 1.06 && (!steady || jolted) {
-            self.distrust = Some("the roll was still disturbed by the change of speed");
-        } else if self.distrust == Some(TOUCHED)
-            && self.cycles.len() > 1
-            && cycle.half.amplitude_rad() >= STRUCK_SHARE * self.touched_rad
-        {
-            // A hand that stays would have taken more: this was a blow against the roll.
-            self.distrust = None;
-        } else if steady && !jolted && self.cycles.len() > 1 && growth > NEW_START
-            || cycle.steady && cycle.half.is_from_hold()
-        {
-            self.distrust = None;
         }
     }
 
@@ -332,13 +298,8 @@ impl Motion {
         closer.events.push(event);
         self.rod_on = kind == RunKind::Forced;
         self.rod_left_s = left_s.filter(|_| self.rod_on);
-        self.pass_ended |= end == RunEnd::PassEnded;
-        self.distrust = match end {
-            RunEnd::Caught => Some(TOUCHED),
-            RunEnd::PassEnded => Some("the roll was still disturbed by the change of speed"),
-            _ => None,
-        };
-        self.touched_rad = cycles.last().map_or(0.0, |c| c.half.amplitude_rad());
+        let amplitude_rad = cycles.last().map_or(0.0, |c| c.half.amplitude_rad());
+        self.trust.run_ended(end, amplitude_rad);
         self.state = State::Searching;
         self.unused = Some(Unused::new(end_s, Cause::After(end, why)));
         for cycle in cycles.iter().chain(&self.doubtful).filter(|c| c.half.end.time_s > end_s) {

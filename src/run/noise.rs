@@ -108,7 +108,7 @@ mod tests {
         let mut estimate = BinNoise::default();
         for k in 0..400 {
             // Twenty values a second, period 1 s, 10 degrees.
-            let roll = 0.17 * (std::f64::consts::TAU * k as f64 / 20.0).sin();
+            let roll = 0.17 * (std::f64::consts::TAU * f64::from(k) / 20.0).sin();
             estimate.push(roll + noise.sample(&mut rng));
         }
         // 180 squares of correlated differences: 12 % of scatter; the roll itself adds 0.00014.

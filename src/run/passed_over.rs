@@ -84,7 +84,7 @@ impl PassedOver {
 
     /// Reports what was passed over last.
     pub(super) fn flush(&mut self, events: &mut Vec<Event>) {
-        events.extend(self.spells.drain(..).map(|spell| spell.event()));
+        events.extend(self.spells.drain(..).map(Spell::event));
     }
 }
 
