@@ -1,4 +1,4 @@
-//! What a campaign has taught so far: its runs, its rejections and its damping against Froude number.
+//! What a campaign has taught so far: runs, rejections, damping against Froude number.
 
 use crate::inverse::identification::{FroudeLaw, Identification};
 use crate::run::{Run, Series};

@@ -1,5 +1,4 @@
 //! Stories.
-#![expect(clippy::print_stdout, reason = "a failing story shows what it saw")]
 
 mod architecture;
 mod bad_input;

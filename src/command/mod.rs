@@ -8,6 +8,7 @@ mod fresh_folder;
 mod identify;
 mod import;
 mod method;
+mod reference;
 mod replay;
 mod replaying;
 mod report;
@@ -41,6 +42,7 @@ enum Command {
     Report(report::Arguments),
     Simulate(simulate::Arguments),
     Import(import::Arguments),
+    Reference(reference::Arguments),
 }
 
 /// Does what the command line asks for; results go to `out`, progress to standard error.
@@ -56,5 +58,6 @@ pub fn run(line: &CommandLine, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Report(arguments) => report::run(arguments, out),
         Command::Simulate(arguments) => simulate::run(arguments, out),
         Command::Import(arguments) => import::run(arguments, out),
+        Command::Reference(arguments) => reference::run(arguments, out),
     }
 }

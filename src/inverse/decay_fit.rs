@@ -294,7 +294,8 @@ fn sum_of_squares(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
 }
 
 /// The covariance of the scores `J_t r_t` with what correlation between samples adds, by Bartlett's
-/// weights up to the lag that the scores' own persistence asks for (Andrews, Econometrica 59, 1991).
+/// weights up to the lag that the scores' own persistence asks for (Andrews, Econometrica 59,
+/// 1991).
 fn correlated_scores(columns: &[Vec<f64>], residual_rad: &[f64]) -> Vec<Vec<f64>> {
     // Sums over a few samples carry the correlation at a fraction of the cost.
     let width = (residual_rad.len() / 1000).max(1);

@@ -35,8 +35,8 @@ impl Restoring {
 
 /// The half cycles of a decay, in order of time.
 ///
-/// From peak to peak `int b phi' dt = V(A_k) - V(A_k+1)`, so the equivalent damping is that loss over
-/// `int phi'^2 dt`, and its uncertainty that of the two peaks.
+/// From peak to peak `int b phi' dt = V(A_k) - V(A_k+1)`, so the equivalent damping is that loss
+/// over `int phi'^2 dt`, and its uncertainty that of the two peaks.
 pub fn half_cycles(
     origin_s: f64,
     time_s: &[f64],

@@ -159,7 +159,8 @@ fn rough_frequency(roll: &Series) -> Result<f64, String> {
             Ok(std::f64::consts::PI * (crossings.len() - 1) as f64 / (last - first))
         }
         _ => Err(format!(
-            "the roll crosses its mean {} times above a tenth of its range, 3 half cycles are needed",
+            "the roll crosses its mean {} times above a tenth of its range, 3 half cycles are \
+             needed",
             crossings.len()
         )),
     }

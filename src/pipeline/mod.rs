@@ -1,16 +1,19 @@
 //! From recordings to results: play, find runs, identify each as it ends.
 //!
-//! One thread reads and finds runs, the caller's thread identifies them, in the order in which
-//! they ended; a short queue between both keeps the memory bounded and the order fixed.
+//! One thread reads and finds runs, one per core identifies them, and the caller's thread takes
+//! them in the order in which they ended; short queues between keep the memory bounded.
 
+mod asking;
 mod claims;
+mod collect;
 mod error;
 mod files;
 mod histories;
-mod identify;
 mod names;
 mod overview;
 mod play;
+mod survey;
+mod workers;
 
 use std::sync::mpsc;
 use std::thread;
@@ -24,10 +27,11 @@ use crate::results::{IdentifiedRun, Overview, Results};
 pub use error::PipelineError;
 pub use files::{REPORT_PAGE, WriteError, results_folder, write_results, write_run_page};
 pub use names::labels;
-pub use play::{Surveyed, survey};
+pub use survey::{Surveyed, survey};
 
-use identify::Identifier;
+use collect::Collector;
 use play::Heard;
+use workers::Workers;
 
 /// How a campaign is replayed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,7 +79,7 @@ pub enum Progress<'p> {
 /// An error of whoever listens to the runs.
 pub type ListenerError = Box<dyn std::error::Error + Send + Sync>;
 
-/// Messages between both threads: enough to keep both busy, few enough to bound the memory.
+/// Messages between two threads: enough to keep both busy, few enough to bound the memory.
 const QUEUE_LENGTH: usize = 8;
 
 /// Replays every recording of a campaign and identifies its runs.
@@ -93,18 +97,21 @@ pub fn replay(
 ) -> Result<Results, PipelineError> {
     let (heard, queue) = mpsc::sync_channel(QUEUE_LENGTH);
     thread::scope(|scope| {
-        scope.spawn(move || play::campaign(campaign, options.speed, &heard));
-        let mut identifier = Identifier::new(campaign, options);
+        let workers = Workers::start(scope);
+        scope.spawn(move || play::campaign(campaign, options, &workers, &heard));
+        let mut collector = Collector::new(campaign);
         for message in queue {
             match message? {
                 Heard::Read { index, bytes_read, bytes_total } => progress(Progress::Read {
                     recording: &campaign.recordings[index].name,
                     bytes_read,
                     bytes_total,
-                    n_runs: identifier.n_runs(),
+                    n_runs: collector.n_runs(),
                 }),
-                Heard::Run { index, run, drive_is_moment, overview } => {
-                    if let Some(run) = identifier.identify(index, *run, drive_is_moment) {
+                Heard::Run { index, identified, overview } => {
+                    // A worker that panicked has no answer, and the scope passes its panic on.
+                    let Ok(identified) = identified.recv() else { break };
+                    if let Some(run) = collector.keep(index, identified) {
                         on_run(run, &overview).map_err(|source| PipelineError::Listener {
                             run: run.id.clone(),
                             source,
@@ -114,14 +121,14 @@ pub fn replay(
                         }
                     }
                 }
-                Heard::Rejected { index, rejection } => identifier.reject(index, rejection),
+                Heard::Rejected { index, rejection } => collector.reject(index, rejection),
                 Heard::Ended { overview, notes } => {
                     progress(Progress::Ended { recording: &overview.recording, notes: &notes });
-                    identifier.end_recording(overview);
+                    collector.end_recording(overview);
                 }
             }
         }
-        Ok(identifier.into_results())
+        Ok(collector.into_results())
     })
 }
 

@@ -1,25 +1,27 @@
 //! Playing the recordings of a campaign one after the other into the run finder.
 
-use std::sync::mpsc::SyncSender;
+use std::sync::mpsc::{Receiver, SyncSender};
 use std::thread;
 use std::time::Duration;
 
 use devices::{Device, Quantity, Reading, Sample};
 use replay::{Note, Player};
 
-use super::PipelineError;
+use super::asking::Asking;
 use super::claims::Claims;
 use super::overview::OverviewBuilder;
+use super::workers::{Identified, Workers};
+use super::{Options, PipelineError};
 use crate::campaign::{Campaign, Recording};
 use crate::results::Overview;
-use crate::run::{Event, Limits, Rejection, Run, RunFinder};
+use crate::run::{Event, Limits, Rejection, RunFinder};
 
-/// What the playing thread tells the identifying one.
+/// What the playing thread tells the collecting one.
 pub(super) enum Heard {
     /// A batch of samples has been read.
     Read { index: usize, bytes_read: u64, bytes_total: u64 },
-    /// A run has ended; the overview shows the recording up to here.
-    Run { index: usize, run: Box<Run>, drive_is_moment: bool, overview: Overview },
+    /// A run has ended and is being identified; the overview shows the recording up to here.
+    Run { index: usize, identified: Receiver<Identified>, overview: Overview },
     /// A stretch will not be used.
     Rejected { index: usize, rejection: Rejection },
     /// The recording has ended.
@@ -32,7 +34,8 @@ type Queue = SyncSender<Result<Heard, PipelineError>>;
 struct Unheard;
 
 /// Plays every recording; stops at the first that cannot be read, or when nobody listens.
-pub(super) fn campaign(campaign: &Campaign, speed: Option<f64>, queue: &Queue) {
+pub(super) fn campaign(campaign: &Campaign, options: &Options, workers: &Workers, queue: &Queue) {
+    let mut asking = Asking::new(campaign, options, workers);
     let mut claims = Claims::default();
     let bytes_total = campaign.recordings.iter().map(size_bytes).sum();
     let mut bytes_before = 0;
@@ -44,10 +47,11 @@ pub(super) fn campaign(campaign: &Campaign, speed: Option<f64>, queue: &Queue) {
             events: Vec::new(),
             overview: OverviewBuilder::default(),
             drive_is_moment: false,
+            asking: &mut asking,
             queue,
         };
         let mut heard = Ok(());
-        let mut pace = Pace { speed, last_s: None };
+        let mut pace = Pace { speed: options.speed, last_s: None };
         let played = play(campaign, recording, &mut claims, &mut |batch, bytes_read| {
             pace.wait(batch);
             heard = listening.batch(batch).and_then(|()| {
@@ -68,57 +72,8 @@ pub(super) fn campaign(campaign: &Campaign, speed: Option<f64>, queue: &Queue) {
     }
 }
 
-/// A recording that was read from end to end, without looking for runs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Surveyed {
-    /// Name of the recording, as in the campaign file.
-    pub recording: String,
-    /// First time stamp [s].
-    pub start_s: f64,
-    /// Last time stamp [s].
-    pub end_s: f64,
-    /// Samples of each channel that was recorded.
-    pub channels: Vec<(Quantity, u64)>,
-    /// What was mended or lost while reading.
-    pub notes: Vec<Note>,
-}
-
-/// Reads every recording of a campaign to its end and tells what each holds, or what is wrong.
-pub fn survey(
-    campaign: &Campaign,
-    progress: &mut dyn FnMut(&str, u64, u64),
-) -> Vec<Result<Surveyed, PipelineError>> {
-    let mut claims = Claims::default();
-    let bytes_total = campaign.recordings.iter().map(size_bytes).sum();
-    let mut bytes_before = 0;
-    let mut all = Vec::new();
-    for recording in &campaign.recordings {
-        let (mut start_s, mut end_s) = (f64::INFINITY, f64::NEG_INFINITY);
-        let mut counts = Quantity::ALL.map(|quantity| (quantity, 0));
-        let played = play(campaign, recording, &mut claims, &mut |batch, bytes_read| {
-            for sample in batch {
-                start_s = start_s.min(sample.time_s);
-                end_s = end_s.max(sample.time_s);
-                counts.iter_mut().filter(|count| count.0 == sample.quantity).for_each(|c| c.1 += 1);
-            }
-            progress(&recording.name, bytes_before + bytes_read, bytes_total);
-            true
-        });
-        claims.end_recording();
-        bytes_before += size_bytes(recording);
-        all.push(played.map(|notes| Surveyed {
-            recording: recording.name.clone(),
-            start_s,
-            end_s,
-            channels: counts.into_iter().filter(|(_, count)| *count > 0).collect(),
-            notes,
-        }));
-    }
-    all
-}
-
 /// Hands a recording to `listener` batch by batch until it ends or the listener has had enough.
-fn play(
+pub(super) fn play(
     campaign: &Campaign,
     recording: &Recording,
     claims: &mut Claims,
@@ -144,17 +99,18 @@ fn play(
 }
 
 /// One recording on its way through the run finder.
-struct Listening<'q> {
+struct Listening<'q, 'a> {
     index: usize,
     recording: &'q str,
     finder: RunFinder,
     events: Vec<Event>,
     overview: OverviewBuilder,
     drive_is_moment: bool,
+    asking: &'q mut Asking<'a>,
     queue: &'q Queue,
 }
 
-impl Listening<'_> {
+impl Listening<'_, '_> {
     fn batch(&mut self, batch: &[Sample]) -> Result<(), Unheard> {
         for sample in batch {
             self.drive_is_moment |= sample.quantity == Quantity::Moment;
@@ -178,15 +134,15 @@ impl Listening<'_> {
     fn tell_events(&mut self) -> Result<(), Unheard> {
         for event in std::mem::take(&mut self.events) {
             let index = self.index;
-            self.tell(match event {
+            let heard = match event {
                 Event::Run(run) => Heard::Run {
                     index,
-                    run: Box::new(run),
-                    drive_is_moment: self.drive_is_moment,
+                    identified: self.asking.identify(run, self.drive_is_moment),
                     overview: self.overview.so_far(self.recording, Vec::new()),
                 },
                 Event::Rejected(rejection) => Heard::Rejected { index, rejection },
-            })?;
+            };
+            self.tell(heard)?;
         }
         Ok(())
     }
@@ -221,7 +177,7 @@ fn limits(campaign: &Campaign, recording: &Recording) -> Limits {
 }
 
 /// Bytes of a recording; a file that cannot be asked will say so when it is opened.
-fn size_bytes(recording: &Recording) -> u64 {
+pub(super) fn size_bytes(recording: &Recording) -> u64 {
     let files = recording.files.iter();
     files.filter_map(|(_, path)| path.metadata().ok()).map(|metadata| metadata.len()).sum()
 }

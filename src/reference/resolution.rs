@@ -108,8 +108,8 @@ pub(super) fn erratum() -> Erratum {
         computed: format!("standard deviation about the law: {}", told.join("; ")),
         how: format!(
             "residuals of the least-squares law against the Cramer-Rao limit of one simulated \
-             decay per row: {RELEASE_DEG} deg, {RECORD_S} s, {SAMPLE_RATE_HZ} Hz, {NOISE_DEG} deg noise, \
-             {N_UNKNOWNS} unknowns"
+             decay per row: {RELEASE_DEG} deg, {RECORD_S} s, {SAMPLE_RATE_HZ} Hz, {NOISE_DEG} deg \
+             noise, {N_UNKNOWNS} unknowns"
         ),
     }
 }

@@ -213,7 +213,8 @@ mod tests {
                 .points(&x, &lo, Ink::of_series(3))
                 .error_bars(&bars, Ink::of_series(4))
                 .stretch(-1.0, 1.0, Ink::new(Hue::Green));
-            let html = Figure::new("any", "Any", Axis::new("x")).panel(panel).markup().into_string();
+            let figure = Figure::new("any", "Any", Axis::new("x")).panel(panel);
+            let html = figure.markup().into_string();
             prop_assert!(!html.contains("NaN") && !html.contains(">inf"));
         }
     }

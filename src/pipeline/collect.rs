@@ -1,65 +1,45 @@
-//! Identifying runs one after the other and keeping what the campaign has taught so far.
+//! Keeping what the campaign has taught so far, run by run.
 
-use super::{Options, names};
+use super::names;
+use super::workers::Identified;
 use crate::campaign::Campaign;
+use crate::inverse;
 use crate::inverse::froude_law::Point;
 use crate::inverse::identification::FroudeLaw;
-use crate::inverse::{self, Setting};
 use crate::results::{IdentifiedRun, Overview, RejectedStretch, Results};
-use crate::run::{Rejection, Run, RunKind};
+use crate::run::{Rejection, RunKind};
 
-/// Why a forced run is of no use without the arm of its rod.
-const NO_ARM: &str = "a rod force was recorded, but the campaign file has no [exciter] with the \
-    moment arm that makes a moment of it";
-
-/// The identifying end of the pipeline.
-pub(super) struct Identifier<'c> {
+/// The collecting end of the pipeline.
+pub(super) struct Collector<'c> {
     campaign: &'c Campaign,
-    options: &'c Options,
     labels: Vec<String>,
     /// Runs named so far, by recording.
     n_named: Vec<usize>,
-    /// Runs found so far, so that each has its own stream of randomness.
-    n_found: u64,
     results: Results,
 }
 
-impl<'c> Identifier<'c> {
-    pub(super) fn new(campaign: &'c Campaign, options: &'c Options) -> Self {
+impl<'c> Collector<'c> {
+    pub(super) fn new(campaign: &'c Campaign) -> Self {
         let labels = names::labels(&campaign.recordings);
         let n_named = vec![0; labels.len()];
-        Self { campaign, options, labels, n_named, n_found: 0, results: Results::default() }
+        Self { campaign, labels, n_named, results: Results::default() }
     }
 
     pub(super) fn n_runs(&self) -> usize {
         self.results.runs.len()
     }
 
-    /// Identifies a run of a recording; one that cannot be identified becomes a rejection.
-    pub(super) fn identify(
+    /// Keeps a run of a recording; one that could not be identified becomes a rejection.
+    pub(super) fn keep(
         &mut self,
         index: usize,
-        run: Run,
-        drive_is_moment: bool,
+        (run, identified): Identified,
     ) -> Option<&mut IdentifiedRun> {
         let recording = &self.campaign.recordings[index];
-        let setting = Setting {
-            restoring_n_m_per_rad: self.campaign.hull.restoring_n_m_per_rad(&self.campaign.water),
-            exciter: self.campaign.exciter.filter(|_| !drive_is_moment),
-            method: self.options.method,
-            seed: self.options.seed.wrapping_add(self.n_found),
-        };
-        self.n_found += 1;
-        let identified =
-            if run.kind == RunKind::Forced && !drive_is_moment && setting.exciter.is_none() {
-                Err(NO_ARM.to_owned())
-            } else {
-                inverse::identify(&run, &setting)
-            };
         let mut identification = match identified {
             Ok(identification) => identification,
             Err(reason) => {
-                let Run { start_s, end_s, .. } = run;
+                let (start_s, end_s) = (run.start_s, run.end_s);
                 self.reject(index, Rejection { start_s, end_s, reason });
                 return None;
             }

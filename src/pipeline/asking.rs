@@ -1,0 +1,43 @@
+//! What an identification must know beside the run, from the campaign and the options.
+
+use std::sync::mpsc::Receiver;
+
+use super::Options;
+use super::workers::{Identified, Workers};
+use crate::campaign::Campaign;
+use crate::inverse::Setting;
+use crate::run::{Run, RunKind};
+
+/// Why a forced run is of no use without the arm of its rod.
+const NO_ARM: &str = "a rod force was recorded, but the campaign file has no [exciter] with the \
+    moment arm that makes a moment of it";
+
+/// Has runs identified, each with a seed of its own.
+pub(super) struct Asking<'a> {
+    campaign: &'a Campaign,
+    options: &'a Options,
+    workers: &'a Workers,
+    n_runs: u64,
+}
+
+impl<'a> Asking<'a> {
+    pub(super) fn new(campaign: &'a Campaign, options: &'a Options, workers: &'a Workers) -> Self {
+        Self { campaign, options, workers, n_runs: 0 }
+    }
+
+    /// Where the answer for a run will arrive.
+    pub(super) fn identify(&mut self, run: Run, drive_is_moment: bool) -> Receiver<Identified> {
+        let Campaign { hull, water, exciter, .. } = self.campaign;
+        let setting = Setting {
+            restoring_n_m_per_rad: hull.restoring_n_m_per_rad(water),
+            exciter: exciter.filter(|_| !drive_is_moment),
+            method: self.options.method,
+            seed: self.options.seed.wrapping_add(self.n_runs),
+        };
+        self.n_runs += 1;
+        if run.kind == RunKind::Forced && !drive_is_moment && exciter.is_none() {
+            return Workers::refuse(run, NO_ARM);
+        }
+        self.workers.identify(run, setting)
+    }
+}
