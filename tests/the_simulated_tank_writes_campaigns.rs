@@ -1,5 +1,8 @@
 //! Campaign folders from scenarios: the paper's, the documented one, and those that are refused.
 
+use devices::{Device, Quantity, Reading, Sample};
+use proptest::prelude::*;
+use replay::{ChannelColumn, Columns, Player, TimeColumn};
 use rolltank::tank::{Scenario, TrueKind, paper, simulate_pass, truth_path, write_campaign};
 
 const DOCUMENTED: &str = include_str!("../docs/scenario.md");
@@ -79,6 +82,63 @@ fn a_campaign_is_written_once_with_its_truth_beside_it() {
     assert!(again.contains("is not empty\nhint: "), "{again}");
 }
 
+/// Plays one recording to its end.
+fn played(files: &[(Option<Quantity>, std::path::PathBuf)], columns: &Columns) -> Vec<Sample> {
+    let mut player = Player::open("pass_01", files, columns).expect("a recording");
+    let mut samples = Vec::new();
+    while player.read(&mut samples).expect("a whole recording") == Reading::More {}
+    samples
+}
+
+#[test]
+fn an_mcap_campaign_plays_back_the_samples_that_were_simulated() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("day");
+    let text = changed("format = \"csv\"", "format = \"mcap\"");
+    let scenario = Scenario::parse(&text, "mcap").unwrap();
+    write_campaign(&scenario, 5, &folder, &mut |_, _| ()).unwrap();
+    let samples = played(&[(None, folder.join("runs/pass_01.mcap"))], &Columns::default());
+    let simulated = simulate_pass(&scenario, 0, 5).samples;
+    assert_eq!(samples.len(), simulated.len());
+    for (a, b) in samples.iter().zip(&simulated) {
+        assert_eq!((a.quantity, a.value.to_bits()), (b.quantity, b.value.to_bits()));
+        // Log times are whole nanoseconds.
+        assert!((a.time_s - b.time_s).abs() < 1e-9, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn a_csv_campaign_plays_back_the_samples_that_were_simulated() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("day");
+    let scenario = Scenario::parse(documented(), "csv").unwrap();
+    write_campaign(&scenario, 5, &folder, &mut |_, _| ()).unwrap();
+    let quantities = [Quantity::Roll, Quantity::Force, Quantity::Speed];
+    let channels = quantities.map(|quantity| ChannelColumn {
+        quantity,
+        column: quantity.name().to_owned(),
+        topic: None,
+        time: None,
+        si_per_unit: if quantity == Quantity::Roll { 1.0_f64.to_radians() } else { 1.0 },
+    });
+    let columns = Columns {
+        time: Some(TimeColumn { column: "t".to_owned(), seconds_per_unit: 1.0 }),
+        sample_rate_hz: None,
+        channels: channels.into(),
+    };
+    let files = quantities.map(|quantity| {
+        (Some(quantity), folder.join(format!("runs/troubled_{}.csv", quantity.name())))
+    });
+    let samples = played(&files, &columns);
+    let simulated = simulate_pass(&scenario, 3, 5).samples;
+    assert_eq!(samples.len(), simulated.len());
+    for (a, b) in samples.iter().zip(&simulated) {
+        assert_eq!(a.quantity, b.quantity);
+        // The table keeps six decimals of a time and of degrees, eight of any other value.
+        assert!((a.time_s - b.time_s).abs() < 1e-6 && (a.value - b.value).abs() < 2e-8);
+    }
+}
+
 #[test]
 fn equal_seeds_give_equal_samples_and_other_seeds_do_not() {
     let scenario = Scenario::parse(documented(), "docs/scenario.md").unwrap();
@@ -136,10 +196,43 @@ fn values_outside_their_limits_are_refused_by_name() {
         ("delimiter = \";\"", "delimiter = \",\"", "decimal_comma needs another delimiter"),
         ("one_file_per_channel = true", "", "different clocks cannot share one table"),
         ("froude = 0.2 ", "froude = 0.2\nspeed_m_s = 1.0 ", "needs either froude or speed_m_s"),
+        ("{ froude = 0.4,", "{ froude = 0.15,", "0.200 is outside the damping table of"),
+        ("impulse_n_m_s = 1.5", "impulse_n_m_s = 90.0", "strike.impulse_n_m_s = 90 is outside"),
+        ("b1_per_s = 0.3796", "b1_per_s = 0.0", "b1_per_s of the damping = 0 is not positive"),
+        ("arm = \"constant\"", "arm = \"rod\"", "arm = \"rod\" needs rod_length_m"),
+        ("force_sign = 1.0", "force_sign = 0.5", "force_sign = 0.5 is neither 1.0 nor -1.0"),
         ("name = \"troubled\"", "name = \"a/b\"", "name = \"a/b\" cannot be a file name"),
     ];
     for (from, to, expected) in cases {
         let message = refusal(&changed(from, to));
         assert!(message.contains(expected) && message.contains("\nhint: "), "{message}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn a_damaged_scenario_is_refused_or_can_be_simulated(
+        at in 0.0..1.0_f64,
+        length in 0_usize..12,
+        patch in "[-0-9a-z.=\\[\\]{}\"\\n ]{0,6}",
+    ) {
+        let text: Vec<char> = documented().chars().collect();
+        let start = (at * text.len() as f64) as usize;
+        let end = (start + length).min(text.len());
+        let around = |part: &[char]| part.iter().collect::<String>();
+        let damaged = around(&text[..start]) + &patch + &around(&text[end..]);
+        match Scenario::parse(&damaged, "damaged.toml") {
+            Err(error) => {
+                let message = error.to_string();
+                prop_assert!(message.starts_with("damaged.toml:"), "{message}");
+                prop_assert!(message.contains("\nhint: "), "{message}");
+            }
+            Ok(scenario) => {
+                let pass = simulate_pass(&scenario, scenario.pass_count() / 2, 1);
+                prop_assert!(pass.samples.iter().all(|s| s.value.is_finite()));
+            }
+        }
     }
 }

@@ -5,12 +5,18 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use devices::Quantity;
+use replay::{Provenance, Recorder, ReplayError};
 
 use super::instruments::FileFormat;
 use super::scenario::{ArmShape, Scenario};
 use super::simulate::{SimulatedPass, simulate_pass};
 use super::table::{TIME_COLUMN, column_unit, table};
 use super::truth::CampaignTruth;
+
+/// Log time at which the first recording starts [s]: a fixed hour, as a simulation reads no clock.
+const DAY_STARTS_S: f64 = 8.0 * 3600.0;
+/// Wait between two passes for calm water [s].
+const CALMING_S: f64 = 300.0;
 
 /// Why `write!` to a `String` is unwrapped.
 const INTO_STRING: &str = "writing to a string cannot fail";
@@ -41,6 +47,9 @@ pub enum TankError {
         /// The folder.
         folder: PathBuf,
     },
+    /// An MCAP recording could not be written.
+    #[error(transparent)]
+    Record(#[from] ReplayError),
     /// A file or folder could not be written.
     #[error("cannot write \"{}\"\nhint: check its permissions and the space left", file.display())]
     Write {
@@ -77,9 +86,11 @@ pub fn write_campaign(
     let runs = folder.join("runs");
     fs::create_dir_all(&runs).map_err(|source| TankError::Write { file: runs, source })?;
     let n_passes = scenario.pass_count();
-    let mut campaign = campaign_head(scenario);
+    let head = campaign_head(scenario);
+    let mut campaign = head.clone();
+    let mut clock_s = DAY_STARTS_S;
     let mut truth = CampaignTruth {
-        schema: "rolltank.truth/1",
+        schema: "rolltank.truth/1".to_owned(),
         scenario: scenario.name.clone(),
         seed,
         passes: Vec::with_capacity(n_passes),
@@ -88,7 +99,14 @@ pub fn write_campaign(
     for index in 0..n_passes {
         let simulated = simulate_pass(scenario, index, seed);
         campaign.push_str(&recording_entry(scenario, index, &simulated));
-        write_recording(scenario, folder, &simulated)?;
+        let zero_log_time_ns = (clock_s * 1e9) as u64;
+        let provenance = Provenance {
+            campaign_text: head.clone(),
+            source: "simulated instruments".to_owned(),
+            zero_log_time_ns,
+        };
+        write_recording(scenario, folder, &simulated, &provenance)?;
+        clock_s += simulated.samples.last().map_or(0.0, |s| s.time_s) + CALMING_S;
         truth.passes.push(simulated.truth);
         progress(index as u64 + 1, n_passes as u64);
     }
@@ -121,7 +139,12 @@ fn write_recording(
     scenario: &Scenario,
     folder: &Path,
     simulated: &SimulatedPass,
+    provenance: &Provenance,
 ) -> Result<(), TankError> {
+    if scenario.recordings.format == FileFormat::Mcap {
+        let file = folder.join(format!("runs/{}.mcap", simulated.name));
+        return Ok(record(&file, simulated, provenance)?);
+    }
     let every: Vec<Quantity> =
         scenario.instruments.recorded().into_iter().map(|(quantity, _)| quantity).collect();
     for (channel, file) in files(scenario, &simulated.name) {
@@ -130,6 +153,18 @@ fn write_recording(
         write(&folder.join(file), text.as_bytes())?;
     }
     Ok(())
+}
+
+fn record(
+    file: &Path,
+    simulated: &SimulatedPass,
+    provenance: &Provenance,
+) -> Result<(), ReplayError> {
+    let mut recorder = Recorder::create(file, provenance)?;
+    for sample in &simulated.samples {
+        recorder.push(sample)?;
+    }
+    recorder.finish().map(|_| ())
 }
 
 /// Everything of `campaign.toml` before its recordings.
@@ -155,11 +190,18 @@ fn campaign_head(scenario: &Scenario) -> String {
     );
     if let Some(shaker) = scenario.exciter {
         let arm = match shaker.arm {
-            ArmShape::Constant => "",
-            ArmShape::Cosine => "arm = \"cosine\"\n",
+            ArmShape::Constant => "constant",
+            ArmShape::Cosine => "cosine",
+            ArmShape::Rod => "rod",
         };
-        write!(text, "\n[exciter]\nmoment_arm_m = {:?}\n{arm}", shaker.moment_arm_m)
-            .expect(INTO_STRING);
+        let rod =
+            shaker.rod_length_m.map_or_else(String::new, |m| format!("rod_length_m = {m:?}\n"));
+        write!(
+            text,
+            "\n[exciter]\nmoment_arm_m = {:?}\narm = \"{arm}\"\n{rod}force_sign = {:?}\n",
+            shaker.moment_arm_m, shaker.force_sign,
+        )
+        .expect(INTO_STRING);
     }
     if scenario.recordings.format == FileFormat::Csv {
         text.push_str(&columns(scenario));

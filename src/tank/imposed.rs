@@ -47,22 +47,30 @@ fn smooth_step(x: f64) -> [f64; 4] {
     ]
 }
 
-/// The fifth-degree path from a state to rest at zero in `length_s`.
+/// Time in which an imposed motion takes up the speed the model had [s].
+///
+/// Short, because the model turns on meanwhile: at 1 rad/s by a twentieth of a radian or so.
+const TAKE_UP_S: f64 = 0.5;
+
+/// Fifth-degree paths that bring position and rate of a state to zero within `length_s`.
 fn settle(from: RollState, elapsed_s: f64, length_s: f64) -> Kinematics {
-    let x = elapsed_s / length_s;
-    if x >= 1.0 {
-        return Kinematics { roll_rad: 0.0, rate_rad_per_s: 0.0, acceleration_rad_per_s2: 0.0 };
-    }
-    let [_, s, ds, dds] = smooth_step(x);
-    let (p, v) = (from.roll_rad, from.rate_rad_per_s * length_s);
-    // 1 - s carries the position; the second polynomial starts with unit slope and ends at rest.
-    let q = x * (1.0 - x).powi(3) * (1.0 + 3.0 * x);
-    let dq = (1.0 - x).powi(2) * (1.0 + 2.0 * x - 15.0 * x * x);
-    let ddq = (1.0 - x) * (-36.0 * x + 60.0 * x * x);
+    let [_, s, ds, dds] = smooth_step(elapsed_s / length_s);
+    let position = Kinematics {
+        roll_rad: from.roll_rad * (1.0 - s),
+        rate_rad_per_s: -from.roll_rad * ds / length_s,
+        acceleration_rad_per_s2: -from.roll_rad * dds / length_s.powi(2),
+    };
+    position.plus(take_up(from.rate_rad_per_s, elapsed_s, length_s.min(TAKE_UP_S)))
+}
+
+/// The path `x (1 - x)^3 (1 + 3x)`: it starts with a rate and no acceleration, and ends at rest.
+fn take_up(rate_rad_per_s: f64, elapsed_s: f64, length_s: f64) -> Kinematics {
+    let x = (elapsed_s / length_s).clamp(0.0, 1.0);
+    let left = 1.0 - x;
     Kinematics {
-        roll_rad: p * (1.0 - s) + v * q,
-        rate_rad_per_s: (-p * ds + v * dq) / length_s,
-        acceleration_rad_per_s2: (-p * dds + v * ddq) / length_s.powi(2),
+        roll_rad: rate_rad_per_s * length_s * x * left.powi(3) * (1.0 + 3.0 * x),
+        rate_rad_per_s: rate_rad_per_s * left.powi(2) * (1.0 + 2.0 * x - 15.0 * x * x),
+        acceleration_rad_per_s2: rate_rad_per_s / length_s * left * (60.0 * x * x - 36.0 * x),
     }
 }
 

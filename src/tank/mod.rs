@@ -1,14 +1,16 @@
 //! The simulated tank: a scenario goes in, recordings and their sealed truth come out.
 //!
-//! It shares no equation with the identifier: [`equation`] has its own equation of motion and its
+//! It shares no equation with the identifier: `equation` has its own equation of motion and its
 //! own integrator, and what comes out has passed the whole instrument chain, so a mistake in one
 //! shows in the other.
 
 mod action;
 mod carriage;
 mod check;
+mod check_pass;
 mod equation;
 mod folder;
+mod free_roll;
 mod imposed;
 mod instruments;
 mod motion;
@@ -19,9 +21,11 @@ mod sensing;
 mod simulate;
 mod table;
 mod truth;
+mod witness;
 
 pub use action::Action;
 pub use folder::{TankError, truth_path, write_campaign};
+pub use free_roll::FreeRoll;
 pub use instruments::{FileFormat, Instrument, Instruments, RecordingFormat, RollUnit};
 pub use parse::ScenarioError;
 pub use scenario::{
@@ -29,4 +33,6 @@ pub use scenario::{
     Shaker, Vibration, Waves, Zeros,
 };
 pub use simulate::{SimulatedPass, simulate_pass};
-pub use truth::{CampaignTruth, PassTruth, RejectedKind, TrueKind, TrueRejection, TrueRun};
+pub use truth::{
+    CampaignTruth, PassTruth, RejectedKind, TrueEnd, TrueKind, TrueRejection, TrueRun,
+};

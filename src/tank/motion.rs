@@ -9,6 +9,9 @@ use super::scenario::Waves;
 /// Integration step [s]: under 0.007 rad of roll phase, and a divisor of common sample intervals.
 pub(super) const STEP_S: f64 = 1e-3;
 
+/// Roll at which the rig's end stops hold the model [rad].
+const END_STOPS_RAD: f64 = std::f64::consts::FRAC_PI_3;
+
 /// Everything that moves the model in one pass.
 pub(super) struct Scene<'a> {
     /// The model, in its condition.
@@ -179,6 +182,10 @@ impl Scene<'_> {
         for time_s in instants(start_s, end_s) {
             if let Some(last) = nodes.last() {
                 state = advance(state, last.time_s, time_s - last.time_s, acceleration);
+                if state.roll_rad.abs() > END_STOPS_RAD {
+                    let roll_rad = END_STOPS_RAD.copysign(state.roll_rad);
+                    state = RollState { roll_rad, rate_rad_per_s: 0.0 };
+                }
             }
             let rod_moment_n_m = drive.rod_n_m(time_s - start_s);
             nodes.push(Node { time_s, state, rod_moment_n_m });

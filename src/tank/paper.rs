@@ -1,8 +1,7 @@
 //! The paper's model test: Tables 1 and 2 as constants, the campaign they describe as a scenario.
 //!
-//! Source: "Stochastic inverse modeling of nonlinear roll damping moment of a ship at nonzero
-//! forward speed", Mathematical Problems in Engineering, 2012. Table 2 is printed with its column
-//! heads exchanged; here the small coefficients belong to the bare hull, as Fig. 12 shows.
+//! Source: Mathematical Problems in Engineering 2012, article 769385. Table 2 is printed with its
+//! column heads exchanged; here the small coefficients belong to the bare hull, as Fig. 12 shows.
 
 use super::action::Action;
 use super::instruments::{Instrument, Instruments, RecordingFormat};
@@ -61,8 +60,8 @@ pub const EXAMPLE_FROUDE: f64 = 1.0;
 /// The printed speed coefficients of (4.3), bare hull and bilge keels [-].
 pub const PRINTED_KAPPA: [f64; 2] = [4.7536, 13.097];
 
-/// Held heel before each decay, by Froude number [deg].
-const HEEL_DEG: [f64; 5] = [12.0, 13.0, 11.0, 14.0, 12.5];
+/// Held heel before each decay, by condition and Froude number [deg]: more where it dies sooner.
+const HEEL_DEG: [[f64; 5]; 2] = [[12.0, 13.0, 11.0, 14.0, 12.5], [12.0, 13.0, 14.0, 15.0, 15.0]];
 /// Roll amplitude of all forced runs [deg]: "the same amplitude of the motion is imposed".
 const FORCED_AMPLITUDE_DEG: f64 = 8.0;
 /// Excitation frequencies as shares of the natural frequency [-], beside the printed example.
@@ -87,8 +86,8 @@ pub fn scenario() -> Scenario {
         condition("bilge keels", NATURAL_FREQUENCY_KEELS_RAD_S, &BILGE_KEELS),
     ];
     let mut passes = Vec::new();
-    for condition in &conditions {
-        for (row, heel_deg) in BARE_HULL.iter().zip(HEEL_DEG) {
+    for (condition, heels_deg) in conditions.iter().zip(HEEL_DEG) {
+        for (row, heel_deg) in BARE_HULL.iter().zip(heels_deg) {
             passes.push(decay_pass(condition, row.froude, heel_deg));
         }
     }
@@ -102,7 +101,12 @@ pub fn scenario() -> Scenario {
         hull: HULL,
         water: Water::default(),
         tank: BASIN,
-        exciter: Some(Shaker { moment_arm_m: MOMENT_ARM_M, arm: ArmShape::Constant }),
+        exciter: Some(Shaker {
+            moment_arm_m: MOMENT_ARM_M,
+            arm: ArmShape::Constant,
+            rod_length_m: None,
+            force_sign: 1.0,
+        }),
         instruments: instruments(),
         recordings: RecordingFormat::default(),
         conditions,

@@ -94,6 +94,16 @@ pub struct Shaker {
     /// How the arm changes with the roll angle.
     #[serde(default)]
     pub arm: ArmShape,
+    /// Length of the rod between its joints [m], for `arm = "rod"` only.
+    #[serde(default)]
+    pub rod_length_m: Option<f64>,
+    /// Sign of the recorded force: `1.0` when a positive one rolls to starboard, else `-1.0`.
+    #[serde(default = "unit")]
+    pub force_sign: f64,
+}
+
+fn unit() -> f64 {
+    1.0
 }
 
 /// How the moment arm of the rod depends on the roll angle.
@@ -105,6 +115,8 @@ pub enum ArmShape {
     Constant,
     /// The rod stays vertical, so the arm shrinks with the cosine of the roll angle.
     Cosine,
+    /// The rod, hung above the port side, leans as its pin joint moves sideways with the roll.
+    Rod,
 }
 
 /// One loading or appendage condition of the model.
@@ -123,7 +135,7 @@ pub struct Condition {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Damping {
-    /// Rows in order of Froude number, joined by straight lines in `Fr^2`.
+    /// Rows in order of Froude number, joined by straight lines in `Fr^2`, that reach every pass.
     Table(Vec<DampingRow>),
     /// `b1 = b0 (1 + kappa Fr^2)` (4.3), with a scatter from pass to pass.
     Law(DampingLaw),

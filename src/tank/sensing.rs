@@ -30,10 +30,9 @@ impl View<'_> {
             Quantity::Moment => motion_at(self.stretches, time_s).1 + zero.moment_n_m,
             Quantity::Force => {
                 let (roll_rad, moment_n_m) = motion_at(self.stretches, time_s);
-                let force_n = self
-                    .scenario
-                    .exciter
-                    .map_or(0.0, |shaker| moment_n_m / arm_m(&shaker, roll_rad));
+                let force_n = self.scenario.exciter.map_or(0.0, |shaker| {
+                    shaker.force_sign * moment_n_m / arm_m(&shaker, roll_rad)
+                });
                 force_n + zero.force_n
             }
             Quantity::Roll => {
@@ -88,10 +87,21 @@ impl View<'_> {
 }
 
 /// Moment arm of the rod [m] at a roll angle, in the simulated tank's own words.
+///
+/// Sideways to port and upwards from the roll axis the pin joint stands at `(l cos, l sin)` of the
+/// roll angle; the rod pulls it towards a joint straight above its place at rest. The arm is the
+/// cross product of place and direction.
 fn arm_m(shaker: &Shaker, roll_rad: f64) -> f64 {
-    match shaker.arm {
-        ArmShape::Constant => shaker.moment_arm_m,
-        ArmShape::Cosine => shaker.moment_arm_m * roll_rad.cos(),
+    let l = shaker.moment_arm_m;
+    match (shaker.arm, shaker.rod_length_m) {
+        (ArmShape::Cosine, _) => l * roll_rad.cos(),
+        (ArmShape::Rod, Some(rod_length_m)) => {
+            let pin = (l * roll_rad.cos(), l * roll_rad.sin());
+            let aside_m = l - pin.0;
+            let up_m = (rod_length_m * rod_length_m - aside_m * aside_m).sqrt();
+            (pin.0 * up_m - pin.1 * aside_m) / rod_length_m
+        }
+        _ => l,
     }
 }
 
@@ -122,4 +132,29 @@ fn sampling_times(instrument: &Instrument, duration_s: f64, jitter: &mut ChaCha8
 fn swallows(gap: &Gap, quantity: Quantity, time_s: f64) -> bool {
     let inside = time_s >= gap.start_s && time_s < gap.start_s + gap.duration_s;
     inside && gap.channel.as_deref().is_none_or(|name| name == quantity.name())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_leaning_rod_does_the_work_that_its_upper_joint_is_given() {
+        let (l, length) = (0.43_f64, 0.6_f64);
+        let shaker = Shaker {
+            moment_arm_m: l,
+            arm: ArmShape::Rod,
+            rod_length_m: Some(length),
+            force_sign: 1.0,
+        };
+        // Virtual work: a unit force along the rod lifts its upper joint by dh cos(lean).
+        let aside = |roll: f64| l * (1.0 - roll.cos());
+        let height = |roll: f64| l * roll.sin() + (length.powi(2) - aside(roll).powi(2)).sqrt();
+        for roll in [-0.3, -0.1, 0.0, 0.2, 0.35_f64] {
+            let lean_cosine = (1.0 - (aside(roll) / length).powi(2)).sqrt();
+            let lift = (height(roll + 1e-5) - height(roll - 1e-5)) / 2e-5;
+            // Central differences of size 1e-5 are good to 1e-10.
+            assert!((arm_m(&shaker, roll) - lift * lean_cosine).abs() < 1e-9, "at {roll} rad");
+        }
+    }
 }

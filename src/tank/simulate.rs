@@ -10,7 +10,8 @@ use super::equation::RollingModel;
 use super::motion::Scene;
 use super::scenario::{Condition, Damping, DampingRow, Pass, Scenario};
 use super::sensing::View;
-use super::truth::{PassTruth, Witness};
+use super::truth::PassTruth;
+use super::witness::Witness;
 
 /// One pass as the instruments saw it, with the truth they did not see.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,8 +40,8 @@ const SCATTER: u64 = 15;
 /// Simulates the pass at `pass_index`, counting repeats, with all draws from `seed`.
 ///
 /// # Panics
-/// When `pass_index` is not below [`Scenario::pass_count`], or the scenario was changed by hand
-/// after [`Scenario::parse`] into one that [`Scenario::check`] refuses.
+/// When `pass_index` is not below [`Scenario::pass_count`], or the scenario was put together by a
+/// program into one that [`Scenario::checked`] refuses.
 pub fn simulate_pass(scenario: &Scenario, pass_index: usize, seed: u64) -> SimulatedPass {
     let (pass, name) = scenario.pass_at(pass_index);
     let condition = scenario

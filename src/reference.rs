@@ -1,1 +1,0 @@
-//! The paper that the method comes from: its tables, with its figures computed again.
