@@ -123,7 +123,8 @@ fn a_slow_forced_roll_is_found() {
     let slow = Scene { model: (1.2, 0.06, 0.5), ..ON_THE_ROD };
     slow.check(
         "{ rest = { duration_s = 20.0 } }, \
-         { forced = { amplitude_deg = 5.0, frequency_rad_s = 0.9, duration_s = 90.0, ramp_s = 8.0 } }",
+         { forced = { amplitude_deg = 5.0, frequency_rad_s = 0.9, duration_s = 90.0, \
+         ramp_s = 8.0 } }",
     );
 }
 
