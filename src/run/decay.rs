@@ -159,7 +159,7 @@ pub(super) fn lost_s(chain: &[HalfCycle], ripple: Ripple) -> f64 {
     let recent = &chain[chain.len().saturating_sub(n_low)..];
     let points = || {
         let middle = |h: &HalfCycle| 0.5 * (h.start.left_s + h.end.time_s) - last.end.time_s;
-        recent.iter().map(move |h| (middle(h), h.amplitude_rad().ln()))
+        recent.iter().map(move |h| (middle(h), amplitude_less_noise(h, ripple).ln()))
     };
     let n = recent.len() as f64;
     let mean_s = points().map(|p| p.0).sum::<f64>() / n;
@@ -172,6 +172,14 @@ pub(super) fn lost_s(chain: &[HalfCycle], ripple: Ripple) -> f64 {
         .clamp(-1.5 * half_s, 2.0 * half_s);
     let falls = slope < 0.0 && after_s.is_finite();
     last.end.time_s + if falls { after_s } else { 0.0 }
+}
+
+/// Amplitude [rad] without what noise adds by the choice of the highest of the bins near a turning
+/// point, of which an eighth are independent and level with it.
+fn amplitude_less_noise(half: &HalfCycle, ripple: Ripple) -> f64 {
+    let n_level = (half.duration_s() / (8.0 * BIN_S)).max(1.0);
+    let excess_rad = ripple.sd_rad * (2.0 * n_level.ln()).sqrt();
+    (half.amplitude_rad() - excess_rad).max(0.5 * half.amplitude_rad())
 }
 
 /// Half period [s] of the last half cycles.

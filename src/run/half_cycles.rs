@@ -24,7 +24,7 @@ impl Ripple {
     }
 
     /// Greatest range [rad] of a model at rest within a few seconds.
-    fn quiet_range_rad(&self) -> f64 {
+    pub(super) fn quiet_range_rad(&self) -> f64 {
         (8.0 * self.sd_rad).max(2.2 * self.quantum_rad).max(FLOOR_RAD)
     }
 

@@ -126,9 +126,12 @@ impl Motion {
     ) {
         let halves = self.halves();
         let due_rad = if halves.is_empty() { 0.0 } else { decay::due_rad(&halves) };
+        // A roll that would have shown, had it gone on.
+        let ripple = records.ripple();
+        let seen_rad = (1.5 * ripple.lost_below_rad).max(ripple.quiet_range_rad());
         let end = match self.state {
             State::Forced => RunEnd::ExcitationChanged,
-            _ if due_rad > 1.5 * records.ripple().lost_below_rad => RunEnd::Caught,
+            _ if due_rad > seen_rad => RunEnd::Caught,
             _ => RunEnd::LostInNoise,
         };
         self.end(end, at_s, records, limits, events);

@@ -22,7 +22,7 @@ pub(super) struct Usable {
     pub(super) end: RunEnd,
     /// Last usable instant [s].
     pub(super) end_s: f64,
-    /// When the motion left its course [s], where it did.
+    /// When the drive, or without one the roll, left its course [s], where it did.
     pub(super) left_s: Option<f64>,
     /// The same as a sentence.
     pub(super) why: String,
@@ -51,7 +51,8 @@ pub(super) fn find(
     if end == RunEnd::LostInNoise {
         return at(end, lost_s.min(end_s));
     }
-    let Some(left_s) = departure_s(records, kind, cycles, &halves, ripple, end_s) else {
+    let departures_s = departures_s(records, kind, cycles, &halves, ripple, end_s);
+    let Some(left_s) = departures_s.into_iter().flatten().reduce(f64::min) else {
         let fades = kind == RunKind::Decay && is_instant && lost_s < last_s + half_s;
         return if fades && lost_s < until_s {
             at(RunEnd::LostInNoise, lost_s)
@@ -70,22 +71,26 @@ pub(super) fn find(
     };
     let why = format!("{}: the roll left its course at {left_s:.1} s", end.clause());
     let end_s = turn_s.max(left_s - 2.0 * DROPPED_MAX * half_s);
-    Usable { end, end_s, left_s: Some(left_s), why }
+    // A rod that lets go is gone when its force shows it; the roll may leave earlier or later.
+    let [roll_s, drive_s] = departures_s;
+    let left_s = drive_s.or(roll_s);
+    Usable { end, end_s, left_s, why }
 }
 
-fn departure_s(
+/// When roll and drive left their course.
+fn departures_s(
     records: &Records,
     kind: RunKind,
     cycles: &[Cycle],
     halves: &[HalfCycle],
     ripple: Ripple,
     end_s: f64,
-) -> Option<f64> {
-    if kind == RunKind::Decay {
-        return decay::departure_s(halves, &records.roll, ripple, end_s);
+) -> [Option<f64>; 2] {
+    match kind {
+        RunKind::Decay => [decay::departure_s(halves, &records.roll, ripple, end_s), None],
+        RunKind::Forced => [
+            forced::departure_s(cycles, &records.roll, ripple.sd_rad, end_s),
+            forced::departure_s(cycles, &records.drive.track, records.drive.sd(), end_s),
+        ],
     }
-    let drive = &records.drive;
-    let roll_s = forced::departure_s(cycles, &records.roll, ripple.sd_rad, end_s);
-    let drive_s = forced::departure_s(cycles, &drive.track, drive.sd(), end_s);
-    [roll_s, drive_s].into_iter().flatten().reduce(f64::min)
 }
