@@ -87,14 +87,14 @@ fn every_row_of_table_2_is_inside_its_interval_as_often_as_promised() {
     let all: Vec<(TrueRun, Identification)> =
         over_seeds(|seed| identified(&scenario, RunKind::Decay, seed)).concat();
     assert_eq!(all.len(), 10 * N_SEEDS as usize, "ten decays a campaign");
-    let hits = |of: &dyn Fn(&(TrueRun, Identification)) -> bool| all.iter().filter(|r| of(r)).count();
+    let hits =
+        |of: &dyn Fn(&(TrueRun, Identification)) -> bool| all.iter().filter(|r| of(r)).count();
     let linear = hits(&|(truth, id)| id.damping.b1_per_s.covers(truth.b1_per_s));
     let cubic = hits(&|(truth, id)| id.damping.b3_s.covers(truth.b3_s));
     assert_covered("b1", linear, all.len());
     assert_covered("b3", cubic, all.len());
-    let frequency = hits(&|(truth, id)| {
-        id.natural_frequency_rad_s.covers(truth.natural_frequency_rad_s)
-    });
+    let frequency =
+        hits(&|(truth, id)| id.natural_frequency_rad_s.covers(truth.natural_frequency_rad_s));
     println!("natural frequency: {frequency} of {}", all.len());
     assert!(share(frequency, all.len()) > 0.93);
 }
