@@ -6,6 +6,7 @@ mod campaign_folder;
 mod dense_posterior;
 mod json_schema;
 mod kvlcc2_is_identified_as_published;
+mod long_campaigns_stay_small;
 mod run_finding_any_stream;
 mod run_finding_decays;
 mod run_finding_false_alarms;

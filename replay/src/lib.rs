@@ -34,6 +34,7 @@ pub use columns::{ChannelColumn, Columns, TimeColumn};
 pub use error::ReplayError;
 pub use folder::list_recordings;
 pub use import::{ImportReport, import};
+pub use nearest::edit_distance;
 pub use note::{Note, Severity};
 pub use number::CellFault;
 pub use player::Player;

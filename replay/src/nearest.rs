@@ -17,7 +17,12 @@ pub(crate) fn nearest<'a>(wanted: &str, names: &'a [String]) -> Option<&'a str> 
         .map(|(_, _, name)| name.as_str())
 }
 
-/// Letters to insert, remove or replace between two words (Levenshtein distance).
+/// Letters to insert, remove or replace to turn one word into another (Levenshtein distance).
+pub fn edit_distance(from: &str, to: &str) -> usize {
+    let letters = |word: &str| -> Vec<char> { word.chars().collect() };
+    edits(&letters(from), &letters(to))
+}
+
 fn edits(from: &[char], to: &[char]) -> usize {
     let mut row: Vec<usize> = (0..=to.len()).collect();
     for (i, a) in from.iter().enumerate() {

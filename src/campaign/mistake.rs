@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use replay::edit_distance;
 use serde::Serialize;
 
 /// One mistake; a campaign file is read to its end, so all of them are reported at once.
@@ -47,22 +48,6 @@ pub(super) fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
 /// A key without the unit at its end.
 fn quantity_of(key: &str) -> &str {
     key.split_once('_').map_or(key, |(quantity, _)| quantity)
-}
-
-/// Number of letters to insert, delete or replace to turn one word into another (Levenshtein).
-fn edit_distance(from: &str, to: &str) -> usize {
-    let to: Vec<char> = to.chars().collect();
-    let mut row: Vec<usize> = (0..=to.len()).collect();
-    for (i, a) in from.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, &b) in to.iter().enumerate() {
-            let replaced = diagonal + usize::from(a != b);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[to.len()]
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Damping coefficients of a decay: the equation of rolling fitted to the record.
 //!
-//! The law of Sec. 4.1 projected on `U` through the likelihood is the law fitted to the roll itself,
+//! The law of Sec. 4.1 projected on `U` through the likelihood is the law fitted to the roll,
 //! so that 500 correlated moments are not counted as 500 observations. Where the law leaves nothing
 //! but noise, the posterior is that of least squares. Where it leaves more, which the evidence of a
 //! walking moment (2.10) beside the law tells, the covariance is that of least squares under the

@@ -5,6 +5,7 @@
 
 mod carriage;
 mod columns;
+mod hyperpriors;
 mod natural_frequency;
 mod prior;
 mod resolution;
@@ -26,14 +27,13 @@ pub struct Erratum {
     pub how: String,
 }
 
-/// Every erratum that follows from the paper's own numbers, in the order of its sections.
-///
-/// What the printed hyperpriors do to a posterior needs one: see [`hyperprior_erratum`].
+/// Every erratum, computed from the paper's own numbers, in the order of its sections.
 pub fn errata() -> Vec<Erratum> {
     vec![
         sign::erratum(),
         prior::rank_erratum(),
         prior::scale_erratum(),
+        hyperprior_erratum(&hyperpriors::check()),
         natural_frequency::bin_erratum(),
         natural_frequency::inertia_erratum(),
         natural_frequency::loop_erratum(),
