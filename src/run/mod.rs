@@ -1,8 +1,4 @@
-<<<<<<< HEAD
-//! Finding runs in the stream: samples go in, runs and rejections come out, no clock is read.
-=======
 //! Finds runs in the stream: samples are pushed in, runs and rejections come out.
->>>>>>> finder
 //!
 //! Each channel is averaged into bins of a twentieth of a second (`bins`), from which its noise
 //! (`noise`) is known. The roll is cut into half cycles between turning points that stand out of
@@ -105,11 +101,7 @@ pub struct Run {
     pub speed_m_s: Option<f64>,
     /// Roll [rad] from `start_s` to `end_s`.
     pub roll: Series,
-<<<<<<< HEAD
-    /// Rod force [N] or exciting moment [N m] as recorded over the same stretch, or empty.
-=======
     /// Rod force [N] or exciting moment [N m] as recorded, over the same stretch, if one was.
->>>>>>> finder
     pub drive: Series,
     /// The still stretch before the run, when there was one.
     pub still: Option<Still>,
