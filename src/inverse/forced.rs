@@ -1,15 +1,20 @@
 //! Inertia, damping and phase of a steady forced run from its measured moment (4.4)-(4.5).
 
+use std::ops::Range;
+
 use super::estimate::Estimate;
 use super::filter::Triangle;
 use super::harmonic::{FourierSeries, Motion};
 use super::smoother::explained_by;
+use super::steady;
 use crate::roll::exciting_moment::Exciter;
 use crate::run::Run;
 
 /// The steady response of a forced run with everything that its harmonics say.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SteadyResponse {
+    /// The roll samples of the run that are steady.
+    pub steady: Range<usize>,
     /// The roll [rad], time from the start of the run.
     pub roll: FourierSeries,
     /// Times of the moment samples [s] from the start of the run.
@@ -46,15 +51,21 @@ impl SteadyResponse {
         let from_start = |times: &[f64]| times.iter().map(|t| t - run.start_s).collect::<Vec<_>>();
         let roll_time_s = from_start(&run.roll.time_s);
         let near = run.excitation_rad_s.ok_or("the excitation frequency is not known")?;
-        let roll = FourierSeries::fit(&roll_time_s, &run.roll.value, near)?;
-        if run.drive.time_s.len() < 30 {
+        if roll_time_s.len() < 30 {
+            return Err(format!("{} roll samples are too few, 30 are needed", roll_time_s.len()));
+        }
+        let (steady, roll) = steady::stretch(&roll_time_s, &run.roll.value, near)?;
+        let steady_s = (roll_time_s[steady.start], roll_time_s[steady.end - 1]);
+        let during = run.drive.time_s.partition_point(|t| t - run.start_s < steady_s.0)
+            ..run.drive.time_s.partition_point(|t| t - run.start_s <= steady_s.1);
+        let moment_time_s = from_start(&run.drive.time_s[during.clone()]);
+        if moment_time_s.len() < 30 {
             return Err("a forced run needs its measured force or moment".into());
         }
-        let moment_time_s = from_start(&run.drive.time_s);
         let zero = run.still.and_then(|s| s.force).unwrap_or(0.0);
         let moment_n_m: Vec<f64> = moment_time_s
             .iter()
-            .zip(&run.drive.value)
+            .zip(&run.drive.value[during])
             .map(|(&t, &value)| match exciter {
                 Some(exciter) => exciter.moment_n_m(value - zero, roll.at(t).value),
                 None => value - zero,
@@ -78,7 +89,7 @@ impl SteadyResponse {
                 response.inertia_kg_m2.mean
             ));
         }
-        Ok(Self { moment_time_s, moment_n_m, ..response })
+        Ok(Self { steady, moment_time_s, moment_n_m, ..response })
     }
 
     /// Phase `eps` by which the moment leads the roll [rad].
@@ -167,6 +178,7 @@ impl Balance {
         let work_variance =
             c[1][1] + 2.0 * cubic_share * c[1][2] + cubic_share * cubic_share * c[2][2];
         SteadyResponse {
+            steady: 0..0,
             roll,
             moment_time_s: Vec::new(),
             moment_n_m: Vec::new(),

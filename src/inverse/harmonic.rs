@@ -51,7 +51,8 @@ impl FourierSeries {
             if !(0.5 * near_rad_s..2.0 * near_rad_s).contains(&frequency) {
                 break;
             }
-            if step.abs() < 1e-3 * sd {
+            // Without noise there is no deviation to compare with, and rounding ends the search.
+            if step.abs() < (1e-3 * sd).max(1e-12 * frequency) {
                 return Ok(Self { frequency_rad_s: Estimate::normal(frequency, sd), ..series });
             }
         }

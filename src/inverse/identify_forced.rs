@@ -13,13 +13,16 @@ use super::paper::{Convolution, least_squares};
 use super::paper_method;
 use super::record::Record;
 use crate::roll::damping::cubic_weight;
-use crate::run::{Run, RunKind};
+use crate::run::{Run, RunKind, Series};
 
 /// Identifies a forced run.
 pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, String> {
     let restoring = setting.restoring_n_m_per_rad;
     let response = SteadyResponse::of(run, restoring, setting.exciter.as_ref())?;
-    let record = Record::new(&run.roll)?;
+    let record = Record::new(&Series {
+        time_s: run.roll.time_s[response.steady.clone()].to_vec(),
+        value: run.roll.value[response.steady.clone()].to_vec(),
+    })?;
     let inertia = response.inertia_kg_m2;
     let natural = (restoring / inertia.mean).sqrt();
     let natural_sd = 0.5 * natural * inertia.sd / inertia.mean;
@@ -59,6 +62,11 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
     let mut chain = None;
     let mut remarks = vec![
         format!("the evidence favours a moment prior of order {}", ordered.order),
+        format!(
+            "steady from {:.2} to {:.2} s of the recording, where nothing but the excitation repeats",
+            run.roll.time_s[response.steady.start],
+            run.roll.time_s[response.steady.end - 1]
+        ),
         format!("restoring K = {restoring:.3} N m/rad from displacement and GM, taken as exact"),
     ];
     if setting.method == Method::PaperMcmc {

@@ -16,6 +16,7 @@ pub mod moment_posterior;
 pub mod paper;
 pub mod record;
 pub mod smoother;
+pub mod steady;
 pub mod transition;
 
 mod drive;
