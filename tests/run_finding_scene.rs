@@ -174,7 +174,7 @@ fn check_run(run: &Run, truth: &TrueRun, natural_s: f64) {
             check_amplitude(run, period_s);
             (0.7 * 2.0 * 100.0_f64.ln() / truth.b1_per_s, allowed_s)
         }
-        // The last quarter of the smooth ramps of 2 s moves the phase by hundredths of a radian.
+        // The last quarter of a smooth ramp of 2 s moves the phase by hundredths of a radian.
         TrueKind::Forced => (allowed_s + 0.5, allowed_s),
     };
     let start_off_s = run.start_s - truth.start_s;

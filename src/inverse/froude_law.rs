@@ -6,10 +6,11 @@
 
 use faer::Mat;
 use faer::linalg::solvers::{DenseSolveCore, Solve};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use super::estimate::Estimate;
 use super::identification::FroudeLaw;
+use super::mixture::{self, Component};
 
 /// What one run brings to the law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +32,10 @@ struct Node {
 }
 
 /// Number of nodes of the scatter, evenly spaced in its logarithm.
-const N_NODES: usize = 160;
+const N_NODES: usize = 80;
+
+/// Froude numbers at which the band is given.
+const N_FROUDE: u32 = 21;
 
 /// The law over the runs of `condition`; none unless there are three runs or more at two Froude
 /// numbers or more.
@@ -43,35 +47,77 @@ pub fn froude_law(condition: &str, points: &[Point]) -> Option<FroudeLaw> {
     let linear: Vec<(f64, f64)> = points.iter().map(|p| (p.b1_per_s.mean, p.b1_per_s.sd)).collect();
     let rows: Vec<Vec<f64>> = points.iter().map(|p| vec![1.0, p.froude.powi(2)]).collect();
     let nodes = nodes(&rows, &linear);
-    let slope = |node: &Node, froude: f64| {
-        let x = [1.0, froude.powi(2)];
-        let mean = x[0] * node.mean[0] + x[1] * node.mean[1];
-        (mean, quadratic(&node.covariance, &x).sqrt())
-    };
     let largest = points.iter().map(|p| p.froude.abs()).fold(0.0, f64::max);
-    let froude: Vec<f64> = (0..=40).map(|i| largest * f64::from(i) / 40.0).collect();
-    let b1_per_s = froude
-        .iter()
-        .map(|&fr| by_quantiles(&nodes, |node, x| below(slope(node, fr), x)))
-        .collect();
+    let froude: Vec<f64> =
+        (0..N_FROUDE).map(|i| largest * f64::from(i) / f64::from(N_FROUDE - 1)).collect();
     let cubic: Vec<(f64, f64)> = points.iter().map(|p| (p.b3_s.mean, p.b3_s.sd)).collect();
     let cubic_nodes = self::nodes(&vec![vec![1.0]; points.len()], &cubic);
     Some(FroudeLaw {
         condition: condition.to_owned(),
-        b0_per_s: by_quantiles(&nodes, |node, x| below(slope(node, 0.0), x)),
-        kappa: by_quantiles(&nodes, |node, kappa| {
-            // slope / b0 <= kappa where slope - kappa b0 <= 0, b0 being positive.
-            let direction = [-kappa, 1.0];
-            let mean = node.mean[1] - kappa * node.mean[0];
-            below((mean, quadratic(&node.covariance, &direction).sqrt()), 0.0)
-        }),
-        b3_s: by_quantiles(&cubic_nodes, |node, x| {
-            below((node.mean[0], node.covariance[(0, 0)].sqrt()), x)
-        }),
-        scatter_per_s: by_quantiles(&nodes, |node, x| f64::from(u8::from(node.scatter <= x))),
+        b0_per_s: combination(&nodes, &[1.0, 0.0]),
+        kappa: kappa(&nodes),
+        b3_s: combination(&cubic_nodes, &[1.0]),
+        scatter_per_s: mixture::estimate(
+            &nodes
+                .iter()
+                .map(|n| Component { weight: n.weight, mean: n.scatter, sd: 0.0 })
+                .collect::<Vec<_>>(),
+        ),
+        b1_per_s: froude.iter().map(|fr| combination(&nodes, &[1.0, fr * fr])).collect(),
         froude,
-        b1_per_s,
     })
+}
+
+/// Estimate of a linear combination of the coefficients.
+fn combination(nodes: &[Node], weights: &[f64]) -> Estimate {
+    let component = |node: &Node| Component {
+        weight: node.weight,
+        mean: node.mean.iter().zip(weights).map(|(m, w)| m * w).sum(),
+        sd: quadratic(&node.covariance, weights).sqrt(),
+    };
+    mixture::estimate(&nodes.iter().map(component).collect::<Vec<_>>())
+}
+
+/// Estimate of the ratio of the slope to `b0`.
+///
+/// A ratio has no moments when its denominator may be nil: mean and standard deviation are those of
+/// its central 90 %.
+fn kappa(nodes: &[Node]) -> Estimate {
+    const N_LEVELS: u32 = 18;
+    let unit = Normal::standard();
+    // The ratio lies below kappa where slope - kappa b0 is negative, b0 being positive.
+    let below = |kappa: f64| -> f64 {
+        nodes
+            .iter()
+            .map(|node| {
+                let mean = node.mean[1] - kappa * node.mean[0];
+                let sd = quadratic(&node.covariance, &[-kappa, 1.0]).sqrt();
+                node.weight * unit.cdf(-mean / sd)
+            })
+            .sum()
+    };
+    let quantile = |level: f64| {
+        let (mut low, mut high) = (-1.0, 1.0);
+        while below(high) < level && high < 1e9 {
+            high *= 2.0;
+        }
+        while below(low) > level && low > -1e9 {
+            low *= 2.0;
+        }
+        // Each halving gains one bit of the bracket.
+        for _ in 0..45 {
+            let middle = 0.5 * (low + high);
+            if below(middle) < level { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    };
+    let levels: Vec<f64> = (0..N_LEVELS)
+        .map(|i| quantile(0.05 + 0.9 * (f64::from(i) + 0.5) / f64::from(N_LEVELS)))
+        .collect();
+    let mean = levels.iter().sum::<f64>() / f64::from(N_LEVELS);
+    let square = levels.iter().map(|q| (q - mean).powi(2)).sum::<f64>();
+    let sd = (square / f64::from(N_LEVELS)).sqrt();
+    Estimate { mean, sd, lo95: quantile(0.025), hi95: quantile(0.975) }
 }
 
 fn quadratic(matrix: &Mat<f64>, x: &[f64]) -> f64 {
@@ -82,13 +128,6 @@ fn quadratic(matrix: &Mat<f64>, x: &[f64]) -> f64 {
         }
     }
     sum.max(0.0)
-}
-
-/// Normal distribution function of mean and standard deviation `(m, s)` at `x`.
-fn below((mean, sd): (f64, f64), x: f64) -> f64 {
-    // A Student of so many degrees of freedom is a normal; statrs' normal has the same accuracy.
-    statrs::distribution::Normal::new(mean, sd.max(f64::MIN_POSITIVE))
-        .map_or(f64::NAN, |normal| normal.cdf(x))
 }
 
 /// Posterior of `y_i = x_i c + scatter + noise_i`, node by node of the scatter.
@@ -113,6 +152,7 @@ fn nodes(rows: &[Vec<f64>], values: &[(f64, f64)]) -> Vec<Node> {
     for node in &mut nodes {
         node.weight = (node.weight - top).exp() / total;
     }
+    nodes.retain(|n| n.weight > 1e-9);
     nodes
 }
 
@@ -147,37 +187,6 @@ fn node(rows: &[Vec<f64>], values: &[(f64, f64)], scatter: f64, p: usize) -> Nod
     }
     weight -= 0.5 * normal.determinant().ln();
     Node { weight, scatter, mean: (0..p).map(|i| mean[(i, 0)]).collect(), covariance }
-}
-
-/// Median-free summary of a mixture given its distribution function: mean and standard deviation
-/// of the central 99.8 %, and the central 95 % interval.
-fn by_quantiles(nodes: &[Node], below: impl Fn(&Node, f64) -> f64) -> Estimate {
-    let cdf = |x: f64| nodes.iter().map(|n| n.weight * below(n, x)).sum::<f64>();
-    let quantile = |level: f64| {
-        let mut reach = 1e-6;
-        while cdf(reach) < level && reach < 1e12 {
-            reach *= 2.0;
-        }
-        let mut high = reach;
-        reach = 1e-6;
-        while cdf(-reach) > level && reach < 1e12 {
-            reach *= 2.0;
-        }
-        let mut low = -reach;
-        // Each halving gains one bit of the bracket.
-        for _ in 0..80 {
-            let middle = 0.5 * (low + high);
-            if cdf(middle) < level { low = middle } else { high = middle }
-        }
-        0.5 * (low + high)
-    };
-    // The ratio kappa has no moments when b0 may be nil, so the outermost 0.1 % are left out.
-    let levels: Vec<f64> =
-        (0..50).map(|i| quantile(0.001 + 0.998 * (f64::from(i) + 0.5) / 50.0)).collect();
-    let n = levels.len() as f64;
-    let mean = levels.iter().sum::<f64>() / n;
-    let sd = (levels.iter().map(|q| (q - mean).powi(2)).sum::<f64>() / n).sqrt();
-    Estimate { mean, sd, lo95: quantile(0.025), hi95: quantile(0.975) }
 }
 
 #[cfg(test)]

@@ -3,8 +3,8 @@
 use super::RunEnd;
 use super::bins::Bin;
 use super::half_cycles::HalfCycle;
-use super::half_cycles::Ripple;
 use super::harmonic::Harmonic;
+use super::ripple::Ripple;
 use super::track::Track;
 
 /// Smallest first amplitude [rad] of a decay: 0.6 deg, so that a release at 1 deg is found whose

@@ -2,8 +2,8 @@
 
 use super::drive::DriveSwing;
 use super::half_cycles::HalfCycle;
-use super::half_cycles::Ripple;
 use super::harmonic::Harmonic;
+use super::ripple::Ripple;
 use super::track::Track;
 
 /// A half cycle of the roll with the drive over the full cycle that ends with it.

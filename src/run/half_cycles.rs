@@ -3,39 +3,8 @@
 use std::collections::VecDeque;
 
 use super::bins::Bin;
+use super::ripple::Ripple;
 
-/// What noise and quantum do to the roll.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-#[expect(clippy::struct_field_names, reason = "the unit is the same")]
-pub(super) struct Ripple {
-    /// Standard deviation of a smoothed bin [rad].
-    pub(super) sd_rad: f64,
-    /// Step of the digitiser [rad].
-    pub(super) quantum_rad: f64,
-    /// Roll amplitude [rad] below which the roll is lost in the noise of the samples.
-    pub(super) lost_below_rad: f64,
-}
-
-impl Ripple {
-    /// How far [rad] the roll must come back before a turning point is believed: noise reaches
-    /// 6 sd in a few thousand bins.
-    fn hysteresis_rad(&self) -> f64 {
-        (6.0 * self.sd_rad).max(2.0 * self.quantum_rad).max(FLOOR_RAD)
-    }
-
-    /// Greatest range [rad] of a model at rest within a few seconds.
-    pub(super) fn quiet_range_rad(&self) -> f64 {
-        (8.0 * self.sd_rad).max(2.2 * self.quantum_rad).max(FLOOR_RAD)
-    }
-
-    /// What noise can do to a ratio of amplitudes near `amplitude_rad` [-].
-    pub(super) fn ratio_tolerance(&self, amplitude_rad: f64) -> f64 {
-        (2.0 * self.sd_rad + 0.5 * self.quantum_rad) / amplitude_rad.max(FLOOR_RAD)
-    }
-}
-
-/// No roll below 0.02 deg matters, however quiet the channel.
-const FLOOR_RAD: f64 = 0.000_35;
 /// A model is still when its roll stays within the noise for this long [s], or longer when the
 /// last half cycle was long.
 pub(super) const QUIET_S: f64 = 2.0;

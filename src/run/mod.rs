@@ -1,4 +1,4 @@
-//! Finding runs in the stream: samples go in, runs and rejections come out, no clock is read.
+//! Finds runs in the stream: samples are pushed in, runs and rejections come out.
 //!
 //! Each channel is averaged into bins of a twentieth of a second (`bins`), from which its noise
 //! (`noise`) is known. The roll is cut into half cycles between turning points that stand out of
@@ -25,6 +25,7 @@ mod motion;
 mod noise;
 mod passed_over;
 mod records;
+mod ripple;
 mod track;
 mod trust;
 mod unused;
@@ -100,7 +101,7 @@ pub struct Run {
     pub speed_m_s: Option<f64>,
     /// Roll [rad] from `start_s` to `end_s`.
     pub roll: Series,
-    /// Rod force [N] or exciting moment [N m] as recorded over the same stretch, or empty.
+    /// Rod force [N] or exciting moment [N m] as recorded, over the same stretch, if one was.
     pub drive: Series,
     /// The still stretch before the run, when there was one.
     pub still: Option<Still>,

@@ -6,10 +6,10 @@ use super::Still;
 use super::bins::Bin;
 use super::carriage_pass::CarriagePass;
 use super::drive::Drive;
-use super::half_cycles::Ripple;
 use super::noise::BinNoise;
 use super::noise::Quantum;
 use super::noise::SampleNoise;
+use super::ripple::Ripple;
 use super::track::Track;
 
 /// Longest still stretch that is averaged [s]; also how long every sample is kept.

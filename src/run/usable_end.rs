@@ -6,8 +6,8 @@ use super::decay;
 use super::forced;
 use super::forced::Cycle;
 use super::half_cycles::HalfCycle;
-use super::half_cycles::Ripple;
 use super::records::Records;
+use super::ripple::Ripple;
 
 /// A stop shows in the roll only some time after it began: so much of a period is dropped before
 /// the roll leaves its decay.
