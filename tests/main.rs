@@ -12,6 +12,7 @@ mod run_finding_decays;
 mod run_finding_false_alarms;
 mod run_finding_forced;
 mod run_finding_kvlcc2;
+mod run_finding_paper;
 mod run_finding_scene;
 mod sampler_cases;
 mod sampler_draws_the_exact_posterior;

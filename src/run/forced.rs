@@ -37,6 +37,10 @@ const SPREAD: f64 = 0.03;
 const UNDRIVEN_SLOPE: f64 = 0.003;
 /// Deviation of an amplitude at the start of a run from that of its settled cycles [-].
 const START_SPREAD: f64 = 0.01;
+/// How many half cycles ahead a turning point is foretold.
+const N_AHEAD: usize = 4;
+/// How far it may miss, as a share of the half period.
+const OUT_OF_STEP: f64 = 0.05;
 /// Half cycles at the start of a run that must follow the sine of the later ones.
 const N_START_CHECKED: usize = 4;
 /// Deviation from that sine, of the amplitude.
@@ -52,7 +56,7 @@ const CHANGED: f64 = 0.05;
 /// Deviation of the drive that shows another excitation [-].
 const DRIVE_CHANGED: f64 = 0.1;
 /// Deviation from the steady sine that shows where the excitation changed, of the amplitude.
-const DEPARTURE: f64 = 0.12;
+const DEPARTURE: f64 = 0.06;
 
 /// Index from which `cycles` are steady up to the last one; none when they are not.
 pub(super) fn settled(cycles: &[Cycle], is_recorded: bool, ripple: Ripple) -> Option<usize> {
@@ -100,14 +104,40 @@ pub(super) fn continues(run: &[Cycle], next: &Cycle, ripple: Ripple) -> bool {
     off(recent) <= CHANGED + 1.5 * noise
         && off(first) <= 2.0 * CHANGED + 1.5 * noise
         && period_off(next, recent) <= PERIOD_SPREAD + noise
+        && is_in_step(run, next, noise)
         && same_drive(next, recent)
+}
+
+/// Whether the turning point that ends `next` comes when those before foretell it: frequencies
+/// 2.5 % apart differ by less than the noise of one half cycle, but four of them add up.
+fn is_in_step(run: &[Cycle], next: &Cycle, noise: f64) -> bool {
+    let Some(known) = run.len().checked_sub(N_AHEAD) else { return true };
+    let known = &run[known.saturating_sub(2 * N_AHEAD)..known];
+    if known.len() < N_AHEAD {
+        return true;
+    }
+    let n = known.len() as f64;
+    let middle = 0.5 * (n - 1.0);
+    let times_s = || known.iter().map(|c| c.half.end.time_s).enumerate();
+    let mean_s = times_s().map(|(_, t)| t).sum::<f64>() / n;
+    let spread = times_s().map(|(k, _)| (k as f64 - middle).powi(2)).sum::<f64>();
+    let half_s = times_s().map(|(k, t)| (k as f64 - middle) * (t - mean_s)).sum::<f64>() / spread;
+    let ahead = n + N_AHEAD as f64 - middle;
+    let off_s = next.half.end.time_s - (mean_s + ahead * half_s);
+    off_s.abs() <= (OUT_OF_STEP + 2.0 * noise) * half_s
 }
 
 /// Number of half cycles at the start of `run` whose amplitude `next` has crept away from while
 /// the drive stayed the same, as the answer to a moment does.
 pub(super) fn n_crept_from(run: &[Cycle], next: &Cycle, ripple: Ripple) -> usize {
     let recent = level(&run[run.len().saturating_sub(8)..]);
-    if recent.drive.is_none() || !same_drive(next, recent) || !same_drive(&run[0], recent) {
+    let noise = ripple.ratio_tolerance(recent.amplitude_rad);
+    if recent.drive.is_none()
+        || !same_drive(next, recent)
+        || !same_drive(&run[0], recent)
+        || !is_in_step(run, next, noise)
+        || (next.half.amplitude_rad() / recent.amplitude_rad - 1.0).abs() > CHANGED
+    {
         return 0;
     }
     let spread = 2.0 * CHANGED + ripple.ratio_tolerance(recent.amplitude_rad);
@@ -149,7 +179,7 @@ fn arrival_s(run: &[Cycle], roll: &Track, ripple: Ripple) -> Option<f64> {
     let later = &later[..later.len().min(16)];
     let (first, last) = (later.first()?, later.last()?);
     let (from_s, to_s) = (first.half.start.time_s, last.half.end.time_s);
-    let frequency_rad_s = std::f64::consts::PI / level(later).half_period_s;
+    let frequency_rad_s = frequency_rad_s(later, roll)?;
     let fit = Harmonic::fit(roll.bins(from_s, to_s), frequency_rad_s, 0.0)?;
     let tolerance_rad = ARRIVAL * fit.amplitude() + 4.0 * ripple.sd_rad;
     fit.departure_s(roll.bins(run[0].half.start.time_s, from_s).rev(), tolerance_rad)
@@ -182,13 +212,16 @@ fn same_drive(cycle: &Cycle, level: Level) -> bool {
 /// Where `track` leaves the steady sine of the last cycles of `run` before `until_s`, scanning
 /// from the start of its last full cycle; `sd` is the noise of a bin.
 pub(super) fn departure_s(run: &[Cycle], track: &Track, sd: f64, until_s: f64) -> Option<f64> {
-    let recent = &run[run.len().saturating_sub(8)..];
-    let (first, last) = (recent.first()?, recent.last()?);
-    let half_s = level(recent).half_period_s;
-    // The last full cycle may already hold the change.
-    let fit_end_s = last.half.end.time_s - 2.0 * half_s;
+    // A change is noticed some half cycles late, so the last of them may already hold it.
+    let n_late = if run.len() > 3 * N_AHEAD { N_AHEAD + 2 } else { 2 };
+    let known = &run[..run.len().saturating_sub(n_late)];
+    let known = &known[known.len().saturating_sub(2 * N_AHEAD)..];
+    let (first, last) = (known.first()?, known.last()?);
+    let half_s = level(known).half_period_s;
+    let fit_end_s = last.half.end.time_s;
     let bins = track.bins(first.half.start.time_s, fit_end_s);
-    let fit = Harmonic::fit(bins, std::f64::consts::PI / half_s, 0.0)?;
+    let frequency_rad_s = frequency_rad_s(known, track).unwrap_or(std::f64::consts::PI / half_s);
+    let fit = Harmonic::fit(bins, frequency_rad_s, 0.0)?;
     let tolerance = DEPARTURE * fit.amplitude() + 6.0 * sd;
     fit.departure_s(track.bins(fit_end_s, until_s), tolerance)
 }
@@ -263,9 +296,30 @@ mod tests {
 
     #[test]
     fn another_amplitude_ends_the_steady_roll() {
-        let run = cycles(&[5.0; 10], Some(2.0));
-        assert!(continues(&run, &cycles(&[5.1], Some(2.05))[0], Ripple::default()));
-        assert!(!continues(&run, &cycles(&[6.0], Some(2.0))[0], Ripple::default()));
-        assert!(!continues(&run, &cycles(&[5.0], Some(3.0))[0], Ripple::default()));
+        let goes_on = |amplitude_deg: f64, drive: f64| {
+            let mut run = cycles(&[[5.0; 10].as_slice(), &[amplitude_deg]].concat(), Some(2.0));
+            let mut next = run.pop().unwrap();
+            next.drive = Some(DriveSwing { amplitude: drive, noise: 0.01 });
+            continues(&run, &next, Ripple::default())
+        };
+        assert!(goes_on(5.1, 2.05));
+        assert!(!goes_on(6.0, 2.0));
+        assert!(!goes_on(5.0, 3.0));
+    }
+
+    #[test]
+    fn another_frequency_ends_the_steady_roll_when_it_is_out_of_step() {
+        let run = cycles(&[5.0; 16], Some(2.0));
+        let slower = |k: usize| {
+            let mut run = run.clone();
+            for (n, cycle) in run.iter_mut().enumerate().skip(16 - k) {
+                cycle.half.end.time_s += 0.025 * 0.5 * (n + k - 15) as f64;
+            }
+            let next = run.pop().unwrap();
+            continues(&run, &next, Ripple::default())
+        };
+        // One half cycle that is 2.5 % longer is noise, four in a row are another frequency.
+        assert!(slower(1));
+        assert!(!slower(4));
     }
 }

@@ -74,11 +74,11 @@ impl Motion {
         let mut closer = Closer { records, limits, events };
         match (self.state, passage) {
             (State::Decay | State::Forced, Passage::Ends(left_s)) => {
-                self.close(RunEnd::PassEnded, left_s, &mut closer);
+                self.stop(RunEnd::PassEnded, left_s, &mut closer);
                 self.search(cycle, &mut closer);
             }
             (State::Decay | State::Forced, Passage::Changing) => {
-                self.close(RunEnd::PassEnded, start_s, &mut closer);
+                self.stop(RunEnd::PassEnded, start_s, &mut closer);
                 self.search(cycle, &mut closer);
             }
             (State::Decay, Passage::Steady) => self.decay(cycle, &mut closer),
@@ -105,8 +105,8 @@ impl Motion {
             // The pass may have ended after the last whole half cycle.
             let last_s = self.cycles.last().map_or(end_s, |c| c.half.end.time_s);
             match records.carriage.passage(last_s, end_s) {
-                Passage::Ends(left_s) => self.close(RunEnd::PassEnded, left_s, &mut closer),
-                _ => self.close(end, end_s, &mut closer),
+                Passage::Ends(left_s) => self.stop(RunEnd::PassEnded, left_s, &mut closer),
+                _ => self.stop(end, end_s, &mut closer),
             }
         }
         self.flush(f64::INFINITY, &mut closer);
@@ -202,7 +202,7 @@ impl Motion {
         match verdict {
             _ if grabbed => {
                 let end_s = self.cycles.last().map_or(0.0, |c| c.half.start.time_s);
-                self.close(RunEnd::ExcitationChanged, end_s, closer);
+                self.stop(RunEnd::ExcitationChanged, end_s, closer);
                 self.search(cycle, closer);
             }
             Verdict::Continues => self.cycles.push(cycle),
@@ -212,7 +212,7 @@ impl Motion {
                 self.cycles.push(cycle);
             }
             Verdict::Ends(end) => {
-                self.close(end, cycle.half.end.time_s, closer);
+                self.stop(end, cycle.half.end.time_s, closer);
                 self.search(cycle, closer);
             }
         }
@@ -250,9 +250,13 @@ impl Motion {
             return;
         }
         let doubtful = std::mem::take(&mut self.doubtful);
-        self.close(RunEnd::ExcitationChanged, cycle.half.end.time_s, closer);
-        for cycle in doubtful {
-            self.search(cycle, closer);
+        let behind = self.close(RunEnd::ExcitationChanged, cycle.half.end.time_s, closer);
+        for cycle in behind.into_iter().chain(doubtful) {
+            match self.state {
+                State::Searching => self.search(cycle, closer),
+                State::Decay => self.decay(cycle, closer),
+                State::Forced => self.forced(cycle, closer),
+            }
         }
     }
 
@@ -267,8 +271,9 @@ impl Motion {
         }
     }
 
-    /// Ends the run under way for the reason `end` at `end_s` at the latest.
-    fn close(&mut self, end: RunEnd, end_s: f64, closer: &mut Closer) {
+    /// Ends the run under way for the reason `end` at `end_s` at the latest; gives the half cycles
+    /// behind its usable end, from which another forced run may begin.
+    fn close(&mut self, end: RunEnd, end_s: f64, closer: &mut Closer) -> Vec<Cycle> {
         let kind = if self.state == State::Forced { RunKind::Forced } else { RunKind::Decay };
         let mut cycles = std::mem::take(&mut self.cycles);
         let ripple = closer.records.ripple();
@@ -278,7 +283,7 @@ impl Motion {
                 self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle, None)).extend(&cycle);
             }
         }
-        let Some(first) = cycles.first() else { return };
+        let Some(first) = cycles.first() else { return Vec::new() };
         let start_s = match kind {
             RunKind::Decay => decay::start_s(&first.half, &closer.records.roll, ripple)
                 .max(self.rod_left_s.take().unwrap_or(f64::NEG_INFINITY)),
@@ -294,7 +299,7 @@ impl Motion {
             // Irregular roll is one rejection, not a hundred.
             self.state = State::Searching;
             self.unused.iter_mut().for_each(|u| cycles.iter().for_each(|c| u.extend(c)));
-            return;
+            return Vec::new();
         }
         self.flush(start_s, closer);
         let event = stretch.close(closer.records, closer.limits);
@@ -305,10 +310,28 @@ impl Motion {
         self.trust.run_ended(end, amplitude_rad);
         self.state = State::Searching;
         self.unused = Some(Unused::new(end_s, Cause::After(end, why)));
-        for cycle in cycles.iter().chain(&self.doubtful).filter(|c| c.half.end.time_s > end_s) {
-            self.unused.iter_mut().for_each(|unused| unused.extend(cycle));
+        let n_used = cycles.iter().take_while(|c| c.half.start.time_s < end_s - 1e-9).count();
+        let behind = cycles.split_off(n_used);
+        if n_used < forced::N_SETTLED {
+            // Each round must use up some, so that rounds come to an end.
+            self.set_aside(&behind, end_s);
+            return Vec::new();
         }
-        self.doubtful.clear();
+        behind
+    }
+
+    /// Ends the run under way, and sets aside what is behind its usable end.
+    fn stop(&mut self, end: RunEnd, end_s: f64, closer: &mut Closer) {
+        let behind = self.close(end, end_s, closer);
+        self.set_aside(&behind, f64::NEG_INFINITY);
+        let doubtful = std::mem::take(&mut self.doubtful);
+        self.set_aside(&doubtful, f64::NEG_INFINITY);
+    }
+
+    fn set_aside(&mut self, cycles: &[Cycle], from_s: f64) {
+        if let Some(unused) = &mut self.unused {
+            cycles.iter().filter(|c| c.half.end.time_s > from_s).for_each(|c| unused.extend(c));
+        }
     }
 
     fn flush(&mut self, end_s: f64, closer: &mut Closer) {

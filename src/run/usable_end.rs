@@ -12,8 +12,10 @@ use super::ripple::Ripple;
 /// A stop shows in the roll only some time after it began: so much of a period is dropped before
 /// the roll leaves its decay.
 const DROPPED: f64 = 1.0 / 6.0;
-/// Greatest part of a period dropped to end on a turning point.
-const DROPPED_MAX: f64 = 0.45;
+/// Greatest part of a period dropped to end on a turning point, of which a hand takes a tenth to
+/// show in a free roll and a rod nothing.
+const DROPPED_MAX_FREE: f64 = 0.55;
+const DROPPED_MAX_DRIVEN: f64 = 0.45;
 
 /// Why and when a run really ends.
 #[derive(Debug)]
@@ -60,6 +62,10 @@ pub(super) fn find(
             at(end, until_s)
         };
     };
+    let dropped_max = match kind {
+        RunKind::Decay => DROPPED_MAX_FREE,
+        RunKind::Forced => DROPPED_MAX_DRIVEN,
+    };
     let latest_s = left_s - 2.0 * DROPPED * half_s;
     let first_s = halves.first().map(|h| h.start.left_s);
     let mut turns = halves.iter().rev().map(|h| h.end.time_s).chain(first_s);
@@ -70,7 +76,7 @@ pub(super) fn find(
         (true, RunKind::Forced) => RunEnd::ExcitationChanged,
     };
     let why = format!("{}: the roll left its course at {left_s:.1} s", end.clause());
-    let end_s = turn_s.max(left_s - 2.0 * DROPPED_MAX * half_s);
+    let end_s = turn_s.max(left_s - 2.0 * dropped_max * half_s);
     // A rod that lets go is gone when its force shows it; the roll may leave earlier or later.
     let [roll_s, drive_s] = departures_s;
     let left_s = drive_s.or(roll_s);
