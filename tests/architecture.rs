@@ -60,13 +60,13 @@ fn rust_files() -> Vec<File> {
     let mut folders: Vec<PathBuf> =
         ["src", "devices", "replay", "tests"].map(|folder| root().join(folder)).to_vec();
     while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(&folder).unwrap() {
-            let path = entry.unwrap().path();
+        for entry in fs::read_dir(&folder).expect("a folder of the workspace") {
+            let path = entry.expect("an entry of it").path();
             if path.is_dir() {
                 folders.push(path);
             } else if path.extension().is_some_and(|extension| extension == "rs") {
-                let relative = path.strip_prefix(root()).unwrap();
-                let text = fs::read_to_string(&path).unwrap();
+                let relative = path.strip_prefix(root()).expect("it lies in the workspace");
+                let text = fs::read_to_string(&path).expect("source files are text");
                 files.push(File { path: relative.to_string_lossy().replace('\\', "/"), text });
             }
         }

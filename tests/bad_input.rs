@@ -1,5 +1,8 @@
 //! Bad input is told with its place, its value, its limit and what to do, never with a panic.
 
+use proptest::prelude::*;
+use rolltank::campaign;
+
 use super::campaign_folder::{CAMPAIGN, CampaignFolder, Told, decay, rolltank};
 
 /// What `replay` says about a campaign that it cannot replay.
@@ -194,4 +197,26 @@ fn a_file_that_only_calls_itself_mcap_is_refused() {
 fn a_broken_toml_file_is_told_with_its_line() {
     let campaign = CampaignFolder::with("[hull]", "[hull");
     tells(&refused(&campaign, 2), &["campaign.toml:2: ", "hint: "]);
+}
+
+proptest! {
+    #[test]
+    fn a_campaign_file_damaged_anywhere_is_read_or_told_with_lines_that_it_has(
+        start in 0..CAMPAIGN.len(),
+        length in 0..40_usize,
+        patch in "[a-z0-9=.,\"\\[\\]{}\n -]{0,12}|nan|inf|1e400|-1|true|\u{fffd}",
+    ) {
+        let end = (start + length).min(CAMPAIGN.len());
+        let damaged = format!("{}{patch}{}", &CAMPAIGN[..start], &CAMPAIGN[end..]);
+        let campaign = CampaignFolder::new();
+        campaign.write("campaign.toml", &damaged);
+        if let Err(mistakes) = campaign::read(campaign.path()) {
+            prop_assert!(!mistakes.is_empty());
+            for mistake in mistakes {
+                let n_lines = damaged.split('\n').count();
+                prop_assert!(mistake.line.is_none_or(|line| (1..=n_lines).contains(&line)));
+                prop_assert!(mistake.hint.is_some(), "{mistake}");
+            }
+        }
+    }
 }

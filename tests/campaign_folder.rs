@@ -34,10 +34,10 @@ pub(crate) struct CampaignFolder {
 impl CampaignFolder {
     /// A campaign of one decay, right in every respect.
     pub(crate) fn new() -> Self {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = tempfile::tempdir().expect("a folder can be made");
         let campaign = Self { folder };
         campaign.write("campaign.toml", CAMPAIGN);
-        campaign.write("pass_01.csv", &decay(0.0));
+        campaign.write("pass_01.csv", decay(0.0));
         campaign
     }
 
@@ -45,7 +45,7 @@ impl CampaignFolder {
     pub(crate) fn with(from: &str, to: &str) -> Self {
         assert!(CAMPAIGN.contains(from), "{from}");
         let campaign = Self::new();
-        campaign.write("campaign.toml", &CAMPAIGN.replace(from, to));
+        campaign.write("campaign.toml", CAMPAIGN.replace(from, to));
         campaign
     }
 
@@ -55,13 +55,13 @@ impl CampaignFolder {
 
     pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) {
         let path = self.path().join(name);
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, content).unwrap();
+        fs::create_dir_all(path.parent().expect("it lies in the folder")).expect("it can be made");
+        fs::write(path, content).expect("the disk has room");
     }
 
     /// Replaces the recording's line `number`, counted from 1 at the header.
     pub(crate) fn replace_row(&self, number: usize, row: &str) {
-        let text = fs::read_to_string(self.path().join("pass_01.csv")).unwrap();
+        let text = fs::read_to_string(self.path().join("pass_01.csv")).expect("a table");
         let mut rows: Vec<&str> = text.lines().collect();
         rows[number - 1] = row;
         self.write("pass_01.csv", rows.join("\n"));
@@ -72,13 +72,14 @@ impl CampaignFolder {
         let mut files = BTreeMap::new();
         let mut folders = vec![self.path().to_owned()];
         while let Some(folder) = folders.pop() {
-            for entry in fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
+            for entry in fs::read_dir(folder).expect("it can be read") {
+                let path = entry.expect("it can be read").path();
                 if path.is_dir() {
                     folders.push(path);
                 } else {
-                    let relative = path.strip_prefix(self.path()).unwrap().to_owned();
-                    files.insert(relative, fs::read(&path).unwrap());
+                    let relative =
+                        path.strip_prefix(self.path()).expect("it lies in the folder").to_owned();
+                    files.insert(relative, fs::read(&path).expect("it can be read"));
                 }
             }
         }
@@ -96,13 +97,13 @@ pub(crate) struct Told {
 
 /// Runs the built program in the folder of a campaign, which it names `.`.
 pub(crate) fn rolltank(folder: &Path, arguments: &[&str]) -> Told {
-    let mut command = Command::cargo_bin("rolltank").unwrap();
+    let mut command = Command::cargo_bin("rolltank").expect("the program is built");
     let output = command.current_dir(folder).env_remove("RUST_LOG").args(arguments).output();
-    let output = output.unwrap();
+    let output = output.expect("the program runs");
     Told {
         exit: output.status.code().expect("the program was not killed"),
-        out: String::from_utf8(output.stdout).unwrap(),
-        err: String::from_utf8(output.stderr).unwrap(),
+        out: String::from_utf8(output.stdout).expect("text"),
+        err: String::from_utf8(output.stderr).expect("text"),
     }
 }
 
@@ -123,7 +124,7 @@ pub(crate) fn decay(start_s: f64) -> String {
         };
         let digit = f64::from((k * 7919) % 5) - 2.0;
         let rounded = (roll_deg * 100.0 + 0.5 * digit).round() / 100.0;
-        writeln!(table, "{:.3},{rounded:.2}", start_s + t).unwrap();
+        writeln!(table, "{:.3},{rounded:.2}", start_s + t).expect("memory has room");
     }
     table
 }

@@ -22,21 +22,21 @@ fn write_table(path: &Path, megabytes: u64) -> usize {
     let decay = decay(0.0);
     let roll: Vec<&str> = decay.lines().skip(1).filter_map(|row| row.split(',').nth(1)).collect();
     let still = &roll[..300];
-    let mut file = BufWriter::new(File::create(path).unwrap());
-    file.write_all(b"t,roll\n").unwrap();
+    let mut file = BufWriter::new(File::create(path).expect("it can be made"));
+    file.write_all(b"t,roll\n").expect("the disk has room");
     let (mut written, mut row, mut n_decays, mut line) = (0, 0_u32, 0, String::new());
     while written < megabytes << 20 {
         let quiet = (0..STILL_REPEATS).flat_map(|_| still.iter());
         for value in roll.iter().chain(quiet) {
             line.clear();
-            writeln!(line, "{:.2},{value}", f64::from(row) * 0.01).unwrap();
-            file.write_all(line.as_bytes()).unwrap();
+            writeln!(line, "{:.2},{value}", f64::from(row) * 0.01).expect("memory has room");
+            file.write_all(line.as_bytes()).expect("the disk has room");
             written += line.len() as u64;
             row += 1;
         }
         n_decays += 1;
     }
-    file.flush().unwrap();
+    file.flush().expect("the disk has room");
     n_decays
 }
 

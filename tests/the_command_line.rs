@@ -104,8 +104,8 @@ fn imported_recordings_give_the_runs_of_their_tables() {
 #[test]
 fn a_recording_that_was_asked_for_and_gives_no_run_ends_with_three() {
     let campaign = CampaignFolder::new();
-    let still: String = (0..1000).map(|k| format!("{:.2},0.00\n", f64::from(k) * 0.01)).collect();
-    campaign.write("pass_01.csv", format!("t,roll\n{still}"));
+    let still: Vec<String> = (0..1000).map(|k| format!("{k},0.00")).collect();
+    campaign.write("pass_01.csv", format!("t,roll\n{}", still.join("\n")));
     let told = rolltank(campaign.path(), &["replay", "."]);
     assert_eq!(told.exit, 3, "{}", told.err);
     assert!(told.err.contains("recording \"pass_01.csv\" gave no run"), "{}", told.err);
@@ -180,8 +180,9 @@ fn a_simulated_campaign_is_never_written_over_another() {
 fn a_reader_that_has_seen_enough_is_no_error() {
     let campaign = CampaignFolder::new();
     // More output than a pipe holds, so that the writer meets the closed end.
-    let many: String = (0..3000).map(|k| format!("[[recording]]\nfile = \"p{k}.csv\"\n")).collect();
-    campaign.write("campaign.toml", CAMPAIGN.to_owned() + &many);
+    let many: Vec<String> =
+        (0..3000).map(|k| format!("[[recording]]\nfile = \"p{k}.csv\"\n")).collect();
+    campaign.write("campaign.toml", CAMPAIGN.to_owned() + &many.concat());
     let mut child = Command::new(env!("CARGO_BIN_EXE_rolltank"))
         .current_dir(campaign.path())
         .args(["check", ".", "--json"])
