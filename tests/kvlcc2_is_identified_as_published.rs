@@ -39,7 +39,7 @@ fn at_five_degrees(identification: &Identification) -> (f64, f64) {
     let five = identification
         .equivalent_damping
         .iter()
-        .find(|e| e.amplitude_deg == 5.0)
+        .find(|e| (e.amplitude_deg - 5.0).abs() < 1e-9)
         .expect("five degrees are always reported");
     let local = five.local_per_s.expect("both runs pass five degrees");
     (five.fitted_per_s.mean * INERTIA_KG_M2, local.mean * INERTIA_KG_M2)

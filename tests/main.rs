@@ -1,4 +1,5 @@
 //! Stories.
+#![expect(clippy::print_stdout, reason = "a failing story shows what it saw")]
 
 mod architecture;
 mod bad_input;

@@ -92,6 +92,11 @@ impl SteadyResponse {
         Ok(Self { steady, moment_time_s, moment_n_m, ..response })
     }
 
+    /// First and last steady instant [s] on the recording's time base.
+    pub fn steady_s(&self, run: &Run) -> (f64, f64) {
+        (run.roll.time_s[self.steady.start], run.roll.time_s[self.steady.end - 1])
+    }
+
     /// Phase `eps` by which the moment leads the roll [rad].
     pub fn phase_rad(&self) -> Estimate {
         let angle = |s: &FourierSeries| s.pairs[0].1.atan2(s.pairs[0].0);

@@ -108,7 +108,7 @@ fn peaks(time_s: &[f64], states: &StatePosterior, restoring: &Restoring) -> Vec<
     let mut peaks: Vec<Peak> = Vec::new();
     for i in 1..time_s.len() {
         let (before, after) = (states.mean[i - 1][1], states.mean[i][1]);
-        if before * after > 0.0 || before == after {
+        if before * after > 0.0 || (before - after).abs() < f64::MIN_POSITIVE {
             continue;
         }
         let share = before / (before - after);

@@ -1,25 +1,17 @@
 //! One decay, from its samples to everything that they say.
 
 use super::Setting;
-use super::decay_fit::{self, B1, B3, DecayPosterior, K3, N_UNKNOWNS, OFFSET};
+use super::decay_fit::{self, DecayPosterior, K3, N_UNKNOWNS, OFFSET};
+use super::decay_law::{Law, equivalent_damping};
+use super::decay_start::first_guess;
 use super::estimate::Estimate;
 use super::half_cycles::{self, Restoring};
-use super::identification::{
-    DampingFit, EquivalentDamping, HalfCycle, Identification, Method, MomentHistory, Resimulation,
-};
-use super::law_misfit;
+use super::identification::{Identification, MomentHistory, Resimulation};
 use super::mixture;
 use super::moment_history::{Reference, state_posterior};
-use super::paper::{Convolution, least_squares};
-use super::paper_method;
+use super::observed::Observed;
 use super::record::Record;
-use crate::roll::damping::cubic_weight;
-use crate::roll::equation::Decay;
 use crate::run::{Run, RunKind};
-
-/// Amplitudes [deg] at which equivalent damping is reported, where the run comes near them.
-pub(super) const AMPLITUDES_DEG: [f64; 11] =
-    [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0];
 
 /// Identifies a decay.
 pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, String> {
@@ -48,32 +40,18 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
         zero_rad: zero.mean,
         zero_sd_rad: zero.sd,
     };
-    let mut moment = MomentHistory::of_decay(&record, &ordered.states, &reference);
     let initial = (unknown(0), unknown(1));
-    let observable = |record: &Record| -> Result<(Convolution, Vec<f64>), String> {
-        let convolution = Convolution::new(record.roll_rad.len(), record.time_s[1], frequency.mean)
-            .map_err(|e| e.to_string())?;
-        let roll: Vec<f64> = record.roll_rad.iter().map(|r| r - zero.mean).collect();
-        let g = convolution.observable(&roll, initial.0.mean, initial.1.mean, None);
-        Ok((convolution, g))
+    let observed = Observed {
+        record: &record,
+        natural_frequency_rad_s: frequency.mean,
+        zero_rad: zero.mean,
+        start: (initial.0.mean, initial.1.mean),
+        drive: None,
     };
-    let mut least_squares_per_s2 = Vec::new();
-    if record.is_even() {
-        let (convolution, g) = observable(&record)?;
-        least_squares_per_s2 = least_squares(&g, &convolution);
-        moment.observable_rad = g;
-    }
-    let mut damping = law.damping();
-    let mut chain = None;
-    let mut remarks = remarks(&fit, &ordered.order, &law);
-    if setting.method == Method::PaperMcmc {
-        let short = record.at_most(paper_method::N_SAMPLES_MAX);
-        let (convolution, g) = observable(&short)?;
-        let drawn = paper_method::draw(&short, &convolution, &g, &moment, setting.seed)?;
-        remarks.extend(drawn.remarks);
-        (damping, moment, chain) = (drawn.damping, drawn.moment, Some(drawn.chain));
-        least_squares_per_s2 = least_squares(&g, &convolution);
-    }
+    let moment = MomentHistory::of_decay(&record, &ordered.states, &reference);
+    let mut told = observed.tell(moment, setting)?;
+    let mut remarks = remarks(&fit, ordered.order, &law);
+    remarks.append(&mut told.remarks);
     Ok(Identification {
         kind: RunKind::Decay,
         method: setting.method,
@@ -85,123 +63,18 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
             ordered.states.noise_sd_rad,
             ordered.states.noise_sd_rad / (2.0 * record.roll_rad.len() as f64).sqrt(),
         ),
-        damping,
+        // The paper fits its law to its own scatter of moments.
+        damping: told.scatter_fit.unwrap_or_else(|| law.damping()),
         equivalent_damping: equivalent_damping(&law, &cycles, frequency.mean),
         half_cycles: cycles,
-        moment,
+        moment: told.moment,
         resimulation: resimulation(&record, &fit),
         inertia_kg_m2: None,
         forced: None,
-        least_squares_per_s2,
-        chain,
+        least_squares_per_s2: told.least_squares_per_s2,
+        chain: told.chain,
         remarks,
     })
-}
-
-/// A starting point for the fit: zero from the middle of the record, damping from how soon the
-/// roll has fallen to a third.
-fn first_guess(record: &Record, run: &Run) -> (Decay, f64) {
-    let w = record.rough_frequency_rad_s;
-    let period_s = std::f64::consts::TAU / w;
-    // The last whole periods swing about the zero; the still stretch knows it where there is one.
-    let from_s = record.span_s() - (record.span_s() / period_s).floor().clamp(1.0, 4.0) * period_s;
-    let tail = record.time_s.iter().zip(&record.roll_rad).filter(|(t, _)| **t >= from_s);
-    let (sum, count) = tail.fold((0.0, 0.0), |(sum, count), (_, r)| (sum + r, count + 1.0));
-    let zero = run.still.map_or(sum / count, |s| s.roll_rad);
-    let zero =
-        if (zero - sum / count).abs() > 0.5 * record.scale_rad() { sum / count } else { zero };
-    let largest = record
-        .time_s
-        .iter()
-        .zip(&record.roll_rad)
-        .filter(|(t, _)| **t <= 1.25 * period_s)
-        .map(|(_, r)| (r - zero).abs())
-        .fold(0.0, f64::max);
-    let last_s = record
-        .time_s
-        .iter()
-        .zip(&record.roll_rad)
-        .filter(|(_, r)| (*r - zero).abs() > largest / 3.0)
-        .map(|(t, _)| *t)
-        .fold(0.25 * period_s, f64::max);
-    let equivalent = 2.0 * 3.0_f64.ln() / last_s;
-    let decay = Decay {
-        initial_roll_rad: record.roll_rad[0] - zero,
-        initial_roll_rate_rad_per_s: (record.roll_rad[1] - record.roll_rad[0]) / record.time_s[1],
-        natural_frequency_rad_s: w,
-        b1_per_s: 0.7 * equivalent,
-        b3_s: 0.3 * equivalent / cubic_weight(w, largest),
-        restoring_cubic_per_rad2: 0.0,
-    };
-    (decay, zero)
-}
-
-/// The fitted law with what its misfit adds to its covariance.
-struct Law<'a> {
-    fit: &'a DecayPosterior,
-    misfit: [[f64; 2]; 2],
-}
-
-impl<'a> Law<'a> {
-    fn new(fit: &'a DecayPosterior, cycles: &[HalfCycle]) -> Self {
-        let probability: f64 =
-            fit.solutions.iter().map(|s| s.weight * s.probability_of_misfit).sum();
-        let mean = |position| mixture::estimate(&fit.unknown(position)).mean;
-        let misfit = if probability > 0.5 {
-            law_misfit::covariance(cycles, mean(B1), mean(B3))
-        } else {
-            [[0.0; 2]; 2]
-        };
-        Self { fit, misfit }
-    }
-
-    /// Estimate of `a b1 + c b3`.
-    fn combination(&self, a: f64, c: f64) -> Estimate {
-        let mut weights = [0.0; N_UNKNOWNS];
-        (weights[B1], weights[B3]) = (a, c);
-        let mut components = self.fit.combination(&weights);
-        let m = &self.misfit;
-        let added = a * a * m[0][0] + 2.0 * a * c * m[0][1] + c * c * m[1][1];
-        for component in &mut components {
-            component.sd = (component.sd.powi(2) + added.max(0.0)).sqrt();
-        }
-        mixture::estimate(&components)
-    }
-
-    fn damping(&self) -> DampingFit {
-        let (b1_per_s, b3_s) = (self.combination(1.0, 0.0), self.combination(0.0, 1.0));
-        // Scaled to unit deviations, the variance of the sum is 2 + 2 correlation.
-        let sum = self.combination(b1_per_s.sd.recip(), b3_s.sd.recip());
-        let correlation = (0.5 * sum.sd.powi(2) - 1.0).clamp(-1.0, 1.0);
-        DampingFit { b1_per_s, b3_s, correlation }
-    }
-}
-
-fn equivalent_damping(
-    law: &Law<'_>,
-    cycles: &[HalfCycle],
-    frequency_rad_s: f64,
-) -> Vec<EquivalentDamping> {
-    let smallest = cycles.iter().map(|c| c.amplitude_rad).fold(f64::INFINITY, f64::min);
-    let largest = cycles.iter().map(|c| c.amplitude_rad).fold(0.0, f64::max);
-    let b3_s = law.combination(0.0, 1.0).mean;
-    AMPLITUDES_DEG
-        .iter()
-        .map(|&amplitude_deg| {
-            let amplitude_rad = amplitude_deg.to_radians();
-            EquivalentDamping {
-                amplitude_deg,
-                fitted_per_s: law.combination(1.0, cubic_weight(frequency_rad_s, amplitude_rad)),
-                local_per_s: half_cycles::local_damping(cycles, amplitude_rad, b3_s),
-                extrapolated: !(smallest..=largest).contains(&amplitude_rad),
-            }
-        })
-        // Five degrees are compared across all runs; others only where the run comes near them.
-        .filter(|e| {
-            let near = (0.8 * smallest..=1.25 * largest).contains(&e.amplitude_deg.to_radians());
-            near || e.amplitude_deg == 5.0
-        })
-        .collect()
 }
 
 /// The run simulated with linear restoring and the fitted law, as in the paper's Fig. 13.
@@ -219,7 +92,7 @@ fn resimulation(record: &Record, fit: &DecayPosterior) -> Resimulation {
     }
 }
 
-fn remarks(fit: &DecayPosterior, order: &usize, law: &Law<'_>) -> Vec<String> {
+fn remarks(fit: &DecayPosterior, order: usize, law: &Law<'_>) -> Vec<String> {
     let mut remarks = vec![format!("the evidence favours a moment prior of order {order}")];
     let cubic = fit.probability_of_cubic_restoring();
     let k3 = mixture::estimate(&fit.unknown(K3));
@@ -243,12 +116,10 @@ fn remarks(fit: &DecayPosterior, order: &usize, law: &Law<'_>) -> Vec<String> {
     }
     let misfit: f64 = fit.solutions.iter().map(|s| s.weight * s.probability_of_misfit).sum();
     if misfit > 0.5 {
-        let plain: [[f64; 2]; 2] = law.misfit;
+        let (b1_per_s, b3_s) = law.misfit_sd();
         remarks.push(format!(
             "b1 phi' + b3 phi'^3 leaves more than noise; the half cycles' scatter about it widens \
-             the standard deviations of b1 and b3 by {:.4} 1/s and {:.4} s",
-            plain[0][0].max(0.0).sqrt(),
-            plain[1][1].max(0.0).sqrt()
+             the standard deviations of b1 and b3 by {b1_per_s:.4} 1/s and {b3_s:.4} s"
         ));
     }
     remarks

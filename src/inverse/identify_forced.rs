@@ -1,16 +1,15 @@
 //! One forced run, from its samples to everything that they say.
 
 use super::Setting;
+use super::decay_law::{AMPLITUDES_DEG, is_compared};
 use super::drive::Drive;
 use super::estimate::Estimate;
 use super::forced::SteadyResponse;
 use super::identification::{
-    DampingFit, EquivalentDamping, ForcedResponse, Identification, Method, MomentHistory,
+    DampingFit, EquivalentDamping, ForcedResponse, Identification, MomentHistory,
 };
-use super::identify_decay::AMPLITUDES_DEG;
 use super::moment_history::{Reference, state_posterior};
-use super::paper::{Convolution, least_squares};
-use super::paper_method;
+use super::observed::Observed;
 use super::record::Record;
 use crate::roll::damping::cubic_weight;
 use crate::run::{Run, RunKind, Series};
@@ -38,54 +37,37 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
         zero_rad: zero,
         zero_sd_rad: response.roll.coefficient_sd,
     };
-    let mut moment = drive.history(&record, &ordered.states, &driven, &reference);
+    let moment = drive.history(&record, &ordered.states, &driven, &reference);
     let start = response.roll.at(record.origin_s - run.start_s);
-    let observable = |record: &Record| -> Result<(Convolution, Vec<f64>), String> {
-        let convolution = Convolution::new(record.roll_rad.len(), record.time_s[1], natural)
-            .map_err(|e| e.to_string())?;
-        let roll: Vec<f64> = record.roll_rad.iter().map(|r| r - zero).collect();
-        let moment: Vec<f64> = record
-            .time_s
-            .iter()
-            .map(|t| drive.at(record.origin_s - drive.origin_s() + t))
-            .collect();
-        let g = convolution.observable(&roll, start.value - zero, start.rate, Some(&moment));
-        Ok((convolution, g))
+    let start = (start.value - zero, start.rate);
+    let observed = Observed {
+        record: &record,
+        natural_frequency_rad_s: natural,
+        zero_rad: zero,
+        start,
+        drive: Some(&drive),
     };
-    let mut least_squares_per_s2 = Vec::new();
-    if record.is_even() {
-        let (convolution, g) = observable(&record)?;
-        least_squares_per_s2 = least_squares(&g, &convolution);
-        moment.observable_rad = g;
-    }
+    let mut told = observed.tell(moment, setting)?;
     let damping = damping(&response);
-    let mut chain = None;
+    let (from_s, to_s) = response.steady_s(run);
     let mut remarks = vec![
         format!("the evidence favours a moment prior of order {}", ordered.order),
         format!(
-            "steady from {:.2} to {:.2} s of the recording, where nothing but the excitation repeats",
-            run.roll.time_s[response.steady.start],
-            run.roll.time_s[response.steady.end - 1]
+            "steady from {from_s:.2} to {to_s:.2} s of the recording, where nothing but the \
+             excitation repeats"
         ),
         format!("restoring K = {restoring:.3} N m/rad from displacement and GM, taken as exact"),
     ];
-    if setting.method == Method::PaperMcmc {
-        let short = record.at_most(paper_method::N_SAMPLES_MAX);
-        let (convolution, g) = observable(&short)?;
-        let drawn = paper_method::draw(&short, &convolution, &g, &moment, setting.seed)?;
-        remarks.extend(drawn.remarks);
-        (moment, chain) = (drawn.moment, Some(drawn.chain));
-        least_squares_per_s2 = least_squares(&g, &convolution);
-    }
-    let forced = forced_response(&response, &moment, run);
+    remarks.append(&mut told.remarks);
+    let forced = forced_response(&response, &told.moment, run);
     let noise_sd = response.roll.noise_sd;
     Ok(Identification {
         kind: RunKind::Forced,
         method: setting.method,
         natural_frequency_rad_s: Estimate::normal(natural, natural_sd),
-        initial_roll_rad: Estimate::normal(start.value - zero, response.roll.coefficient_sd),
+        initial_roll_rad: Estimate::normal(start.0, response.roll.coefficient_sd),
         initial_roll_rate_rad_per_s: Estimate::normal(
-            start.rate,
+            start.1,
             response.roll.coefficient_sd * response.roll.frequency_rad_s.mean,
         ),
         roll_offset_rad: Estimate::normal(zero, noise_sd / (run.roll.value.len() as f64).sqrt()),
@@ -95,18 +77,13 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
         ),
         equivalent_damping: equivalent_damping(&response),
         half_cycles: Vec::new(),
-        moment,
-        resimulation: drive.resimulation(
-            &record,
-            &damping,
-            &reference,
-            (start.value - zero, start.rate),
-        ),
+        moment: told.moment,
+        resimulation: drive.resimulation(&record, &damping, &reference, start),
         inertia_kg_m2: Some(inertia),
         forced: Some(forced),
-        least_squares_per_s2,
+        least_squares_per_s2: told.least_squares_per_s2,
         damping,
-        chain,
+        chain: told.chain,
         remarks,
     })
 }
@@ -135,7 +112,7 @@ fn equivalent_damping(response: &SteadyResponse) -> Vec<EquivalentDamping> {
     let work = response.work_damping_n_m_s.scaled(1.0 / response.inertia_kg_m2.mean);
     let mut all: Vec<EquivalentDamping> = AMPLITUDES_DEG
         .iter()
-        .filter(|a| (0.8..=1.25).contains(&(a.to_radians() / amplitude_rad)) || **a == 5.0)
+        .filter(|a| (0.8..=1.25).contains(&(a.to_radians() / amplitude_rad)) || is_compared(**a))
         .map(|&amplitude_deg| EquivalentDamping {
             amplitude_deg,
             fitted_per_s: fitted(amplitude_deg.to_radians()),

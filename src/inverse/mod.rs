@@ -19,9 +19,12 @@ pub mod smoother;
 pub mod steady;
 pub mod transition;
 
+mod decay_law;
+mod decay_start;
 mod drive;
 mod identify_decay;
 mod identify_forced;
+mod observed;
 mod paper_method;
 
 use identification::{Identification, Method};
