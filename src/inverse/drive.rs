@@ -151,13 +151,6 @@ impl Drive {
             rate += h / 6.0 * (l1 + 2.0 * (l2 + l3) + l4);
             simulated_rad.push(roll + zero_rad);
         }
-        let square: f64 =
-            simulated_rad.iter().zip(&record.roll_rad).map(|(s, m)| (m - s).powi(2)).sum();
-        Resimulation {
-            time_s: record.time_s.iter().map(|t| record.origin_s + t).collect(),
-            measured_rad: record.roll_rad.clone(),
-            rmse_rad: (square / simulated_rad.len() as f64).sqrt(),
-            simulated_rad,
-        }
+        record.resimulation(simulated_rad)
     }
 }

@@ -6,7 +6,7 @@ use super::decay_law::{Law, equivalent_damping};
 use super::decay_start::first_guess;
 use super::estimate::Estimate;
 use super::half_cycles::{self, Restoring};
-use super::identification::{Identification, MomentHistory, Resimulation};
+use super::identification::{DampingFit, Identification, MomentHistory, Resimulation};
 use super::mixture;
 use super::moment_history::{Reference, state_posterior};
 use super::observed::Observed;
@@ -68,7 +68,7 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
         equivalent_damping: equivalent_damping(&law, &cycles, frequency.mean),
         half_cycles: cycles,
         moment: told.moment,
-        resimulation: resimulation(&record, &fit),
+        resimulation: resimulation(&record, &fit, told.scatter_fit.as_ref()),
         inertia_kg_m2: None,
         forced: None,
         least_squares_per_s2: told.least_squares_per_s2,
@@ -77,19 +77,19 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
     })
 }
 
-/// The run simulated with linear restoring and the fitted law, as in the paper's Fig. 13.
-fn resimulation(record: &Record, fit: &DecayPosterior) -> Resimulation {
-    let (decay, offset_rad) = fit.linear;
-    let simulated_rad: Vec<f64> =
-        decay.solve(&record.time_s).iter().map(|m| m.roll_rad + offset_rad).collect();
-    let square: f64 =
-        simulated_rad.iter().zip(&record.roll_rad).map(|(s, m)| (m - s).powi(2)).sum();
-    Resimulation {
-        time_s: record.time_s.iter().map(|t| record.origin_s + t).collect(),
-        measured_rad: record.roll_rad.clone(),
-        rmse_rad: (square / simulated_rad.len() as f64).sqrt(),
-        simulated_rad,
+/// The run simulated with linear restoring and its law, as in the paper's Fig. 13: the least-squares
+/// law, or that of the chain's scatter where there is one.
+fn resimulation(
+    record: &Record,
+    fit: &DecayPosterior,
+    scatter_fit: Option<&DampingFit>,
+) -> Resimulation {
+    let (mut decay, offset_rad) = fit.linear;
+    if let Some(law) = scatter_fit {
+        (decay.b1_per_s, decay.b3_s) = (law.b1_per_s.mean, law.b3_s.mean);
     }
+    let motion = decay.solve(&record.time_s);
+    record.resimulation(motion.iter().map(|m| m.roll_rad + offset_rad).collect())
 }
 
 fn remarks(fit: &DecayPosterior, order: usize, law: &Law<'_>) -> Vec<String> {

@@ -1,5 +1,6 @@
 //! A run's roll record made ready for the inverse: from its first sample, evenly thinned.
 
+use super::identification::Resimulation;
 use crate::run::Series;
 
 /// Roll against time from the start of a run.
@@ -59,6 +60,18 @@ impl Record {
         let n = self.roll_rad.len() as f64;
         let mean = self.roll_rad.iter().sum::<f64>() / n;
         (self.roll_rad.iter().map(|r| (r - mean).powi(2)).sum::<f64>() / n).sqrt()
+    }
+
+    /// The record beside what a simulation makes of it [rad], zero offset included.
+    pub(super) fn resimulation(&self, simulated_rad: Vec<f64>) -> Resimulation {
+        let square: f64 =
+            simulated_rad.iter().zip(&self.roll_rad).map(|(s, m)| (m - s).powi(2)).sum();
+        Resimulation {
+            time_s: self.time_s.iter().map(|t| self.origin_s + t).collect(),
+            measured_rad: self.roll_rad.clone(),
+            rmse_rad: (square / simulated_rad.len() as f64).sqrt(),
+            simulated_rad,
+        }
     }
 
     /// Whether all samples are one step apart.
