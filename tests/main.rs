@@ -4,6 +4,7 @@
 mod architecture;
 mod bad_input;
 mod campaign_folder;
+mod decays_are_identified;
 mod dense_posterior;
 mod json_schema;
 mod kvlcc2_is_identified_as_published;
