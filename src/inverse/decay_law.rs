@@ -42,7 +42,7 @@ impl<'a> Law<'a> {
     }
 
     /// Estimate of `a b1 + c b3`.
-    fn combination(&self, a: f64, c: f64) -> Estimate {
+    pub(super) fn combination(&self, a: f64, c: f64) -> Estimate {
         let mut weights = [0.0; N_UNKNOWNS];
         (weights[B1], weights[B3]) = (a, c);
         let mut components = self.fit.combination(&weights);
@@ -64,30 +64,28 @@ impl<'a> Law<'a> {
     }
 }
 
-/// The law's equivalent damping at the reported amplitudes, with the half cycles' own beside it.
+/// Equivalent damping at the reported amplitudes by a law, given for each weight of its cubic
+/// coefficient [1/s2], with the half cycles' own beside it.
 pub(super) fn equivalent_damping(
-    law: &Law<'_>,
+    law: impl Fn(f64) -> Estimate,
+    b3_s: f64,
     cycles: &[HalfCycle],
     frequency_rad_s: f64,
 ) -> Vec<EquivalentDamping> {
     let smallest = cycles.iter().map(|c| c.amplitude_rad).fold(f64::INFINITY, f64::min);
     let largest = cycles.iter().map(|c| c.amplitude_rad).fold(0.0, f64::max);
-    let b3_s = law.combination(0.0, 1.0).mean;
-    AMPLITUDES_DEG
-        .iter()
-        .map(|&amplitude_deg| {
-            let amplitude_rad = amplitude_deg.to_radians();
-            EquivalentDamping {
-                amplitude_deg,
-                fitted_per_s: law.combination(1.0, cubic_weight(frequency_rad_s, amplitude_rad)),
-                local_per_s: half_cycles::local_damping(cycles, amplitude_rad, b3_s),
-                extrapolated: !(smallest..=largest).contains(&amplitude_rad),
-            }
-        })
-        // Five degrees are compared across all runs; others only where the run comes near them.
-        .filter(|e| {
-            let near = (0.8 * smallest..=1.25 * largest).contains(&e.amplitude_deg.to_radians());
-            near || is_compared(e.amplitude_deg)
-        })
-        .collect()
+    let near = |amplitude_deg: f64| {
+        let amplitude_rad = amplitude_deg.to_radians();
+        (0.8 * smallest..=1.25 * largest).contains(&amplitude_rad) || is_compared(amplitude_deg)
+    };
+    let at = |amplitude_deg: f64| {
+        let amplitude_rad = amplitude_deg.to_radians();
+        EquivalentDamping {
+            amplitude_deg,
+            fitted_per_s: law(cubic_weight(frequency_rad_s, amplitude_rad)),
+            local_per_s: half_cycles::local_damping(cycles, amplitude_rad, b3_s),
+            extrapolated: !(smallest..=largest).contains(&amplitude_rad),
+        }
+    };
+    AMPLITUDES_DEG.into_iter().filter(|a| near(*a)).map(at).collect()
 }

@@ -62,6 +62,16 @@ pub struct DampingFit {
     pub correlation: f64,
 }
 
+impl DampingFit {
+    /// Estimate of `b1 + weight b3` [1/s], the weight of the cubic coefficient in [1/s2].
+    pub fn equivalent_per_s(&self, cubic_weight: f64) -> Estimate {
+        let (linear, cubic) = (self.b1_per_s, self.b3_s.scaled(cubic_weight));
+        let shared = 2.0 * self.correlation * linear.sd * cubic.sd;
+        let variance = linear.sd.powi(2) + cubic.sd.powi(2) + shared;
+        Estimate::normal(linear.mean + cubic.mean, variance.max(0.0).sqrt())
+    }
+}
+
 /// Equivalent linear damping `b_eq` at one roll amplitude.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EquivalentDamping {

@@ -52,6 +52,14 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
     let mut told = observed.tell(moment, setting)?;
     let mut remarks = remarks(&fit, ordered.order, &law);
     remarks.append(&mut told.remarks);
+    // The paper fits its law to its own scatter of moments.
+    let damping = told.scatter_fit.unwrap_or_else(|| law.damping());
+    let equivalent = |cubic_weight: f64| match told.scatter_fit {
+        Some(fit) => fit.equivalent_per_s(cubic_weight),
+        None => law.combination(1.0, cubic_weight),
+    };
+    let equivalent_damping =
+        equivalent_damping(equivalent, damping.b3_s.mean, &cycles, frequency.mean);
     Ok(Identification {
         kind: RunKind::Decay,
         method: setting.method,
@@ -63,9 +71,8 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
             ordered.states.noise_sd_rad,
             ordered.states.noise_sd_rad / (2.0 * record.roll_rad.len() as f64).sqrt(),
         ),
-        // The paper fits its law to its own scatter of moments.
-        damping: told.scatter_fit.unwrap_or_else(|| law.damping()),
-        equivalent_damping: equivalent_damping(&law, &cycles, frequency.mean),
+        damping,
+        equivalent_damping,
         half_cycles: cycles,
         moment: told.moment,
         resimulation: resimulation(&record, &fit, told.scatter_fit.as_ref()),

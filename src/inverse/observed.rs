@@ -43,7 +43,7 @@ impl Observed<'_> {
             remarks: Vec::new(),
         };
         if setting.method == Method::PaperMcmc {
-            let short = self.record.at_most(paper_method::N_SAMPLES_MAX);
+            let short = self.record.at_most(paper_method::n_samples_max(self.record));
             let (convolution, g) = self.observable(&short)?;
             let drawn = paper_method::draw(&short, &convolution, &g, &told.moment, setting.seed)?;
             told.least_squares_per_s2 = least_squares(&g, &convolution);

@@ -7,8 +7,15 @@ use super::paper::{ChainSettings, Convolution, Hyperpriors, sample};
 use super::record::Record;
 use super::smoother::explained_by;
 
-/// Samples of a run that the chains see: the paper's runs have a few hundred.
-pub(super) const N_SAMPLES_MAX: usize = 500;
+/// Samples of a record that the chains see: as many as the paper's runs have, more where a period
+/// would have fewer than twenty, for its impulses (2.6) need them close.
+pub(super) fn n_samples_max(record: &Record) -> usize {
+    const LIKE_THE_PAPER: usize = 500;
+    /// Beyond this the single-site sampler takes minutes and does not converge.
+    const TOO_MANY: usize = 2000;
+    let n_periods = record.span_s() * record.rough_frequency_rad_s / std::f64::consts::TAU;
+    ((20.0 * n_periods) as usize).clamp(LIKE_THE_PAPER, TOO_MANY)
+}
 
 /// What the chains say.
 pub(super) struct Drawn {
