@@ -52,6 +52,13 @@ impl<'a> FieldUnits<'a> {
         product(per_inertia, self.inertia_kg_m2())
     }
 
+    /// Equivalent damping of a forced run at its own amplitude, from the work per cycle [1/s].
+    pub(crate) fn work_damping_per_s(&self) -> Option<Estimate> {
+        let forced = self.run.identification.forced.as_ref()?;
+        // The inertia is known a hundred times better than the work.
+        Some(forced.work_damping_n_m_s.scaled(1.0 / self.inertia_kg_m2().mean))
+    }
+
     /// `B44hat = B / (rho V B^2) sqrt(B / 2g)` [-] of `b` [1/s], ITTC 7.5-02-07-04.5.
     pub(crate) fn b44_hat(&self, per_inertia: Estimate) -> Estimate {
         self.moment(per_inertia).scaled(self.b44_hat_per_n_m_s())

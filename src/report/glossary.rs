@@ -47,6 +47,9 @@ const SYMBOLS: &[Symbol] = &[
     ),
     ("ρ, g", "density of the water, gravity", "kg/m³, m/s²"),
     ("m", "mass of the model ρ ∇", "kg"),
+    ("λ, σ", "smoothness of U, noise of the roll, as the paper's sampler draws them", "s⁴, rad"),
+    ("a, c, p", "coefficients of extinction; see the conventions", "–, 1/rad², –"),
+    ("k₃", "cubic restoring: K (φ + k₃ φ³)", "1/rad²"),
     ("rmse", "root mean square of measured less resimulated roll", "deg"),
 ];
 

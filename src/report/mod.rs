@@ -10,6 +10,7 @@ mod glossary;
 mod json;
 mod notation;
 mod number;
+mod remark;
 mod run_page;
 mod whole_file;
 
@@ -68,7 +69,12 @@ pub fn write_run(
     write_marked_run(campaign, run, overview, &[], dir)
 }
 
+/// File name of the figure of damping against Froude number.
+const DAMPING_FIGURE: &str = "damping_against_froude.svg";
+
 /// Writes the campaign's page, `index.html`, to `dir`; returns its path.
+///
+/// Its figure of damping against Froude number is left beside it as a file of its own.
 pub fn write_campaign(
     campaign: &Campaign,
     results: &Results,
@@ -76,6 +82,10 @@ pub fn write_campaign(
 ) -> Result<PathBuf, ReportError> {
     for run in &results.runs {
         document::run_file_name(&run.id)?;
+    }
+    if let Some(figure) = campaign_page::damping_figure(campaign, results) {
+        let drawing = figure.file().into_string();
+        whole_file::write(dir, DAMPING_FIGURE, drawing.as_bytes())?;
     }
     let page = campaign_page::html(campaign, results);
     whole_file::write(dir, "index.html", page.into_string().as_bytes())

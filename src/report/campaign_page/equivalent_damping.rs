@@ -1,36 +1,50 @@
-//! Equivalent damping at the comparison amplitude against Froude number, all conditions together.
+//! Equivalent damping against Froude number, all conditions together.
 
 use maud::Markup;
 
 use super::CampaignPage;
 use crate::report::document::section;
-use crate::report::figure::{Axis, Figure, Ink, Panel};
+use crate::report::figure::{Axis, Figure, Ink, Panel, Shape};
+use crate::run::RunKind;
 
 pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
-    let mut panel = Panel::new(Axis::new("b_{eq}(5 deg) [1/s]").holding(0.0)).height(260);
+    let mut panel = Panel::new(Axis::new("b_{eq} [1/s]").holding(0.0)).height(280);
     let mut any = false;
     for (index, condition) in page.conditions().into_iter().enumerate() {
-        let bars: Vec<_> = page
-            .runs_of(condition)
-            .filter_map(|run| {
-                let at = page.field_units(run).at_comparison()?.fitted_per_s;
-                Some((run.froude, at.mean, at.lo95, at.hi95))
-            })
-            .collect();
-        if !bars.is_empty() {
+        let mut decays = Vec::new();
+        let mut forced = Vec::new();
+        for run in page.runs_of(condition) {
+            let units = page.field_units(run);
+            let (bars, damping) = match run.run.kind {
+                RunKind::Decay => (&mut decays, units.at_comparison().map(|at| at.fitted_per_s)),
+                RunKind::Forced => (&mut forced, units.work_damping_per_s()),
+            };
+            bars.extend(damping.map(|at| (run.froude, at.mean, at.lo95, at.hi95)));
+        }
+        let ink = || Ink::of_series(index);
+        if !forced.is_empty() {
             any = true;
-            panel = panel.error_bars(&bars, Ink::of_series(index).named(condition));
+            let name = format!("{condition}: forced, at A₁");
+            let ink = ink().shaped(Shape::OpenCircle);
+            panel = panel.error_bars(&forced, ink.named(name));
+        }
+        if !decays.is_empty() {
+            any = true;
+            let name = format!("{condition}: decays, at 5 deg");
+            panel = panel.error_bars(&decays, ink().named(name));
         }
     }
     any.then(|| {
         let figure = Figure::new(
             "equivalent-damping",
-            "Equivalent damping at 5 deg against Froude number",
+            "Equivalent damping against Froude number",
             Axis::new("Froude number Fr [–]"),
         )
         .caption(
-            "All runs, decays and forced; the value to compare between runs, since b₁ and b₃ trade \
-             against each other.",
+            "The value to compare between runs, since b₁ and b₃ trade against each other. Decays: \
+             at 5 deg, from the law. Forced runs: at their own amplitude A₁, from the work per \
+             cycle without a law; of runs at one speed the faster one has the larger b_{eq} where \
+             b₃ is positive.",
         )
         .panel(panel);
         section("equivalent-damping-section", "Equivalent damping", &figure.markup())

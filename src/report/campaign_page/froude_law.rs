@@ -7,7 +7,12 @@ use crate::report::document::{estimate_cell, section, table};
 
 pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
     let laws = &page.results.froude_laws;
-    if laws.is_empty() {
+    let without: Vec<_> = page
+        .conditions()
+        .into_iter()
+        .filter(|condition| laws.iter().all(|law| law.condition != *condition))
+        .collect();
+    if laws.is_empty() && without.is_empty() {
         return None;
     }
     let rows: Vec<_> = laws
@@ -24,10 +29,19 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
         .collect();
     let columns = [("Condition", ""), ("b₀", "1/s"), ("κ", "–"), ("b₃", "s"), ("s_{run}", "1/s")];
     let caption = "b₁(Fr) = b₀ (1 + κ Fr²), b₃ common to all speeds, s_{run} the run-to-run \
-                   standard deviation of b₁.";
+                   standard deviation of b₁. From the free decays; from forced runs where a \
+                   condition has no decay.";
     Some(section(
         "froude-law",
         "Law of damping against Froude number",
-        &table("froude-law-table", caption, &columns, &rows),
+        &html! {
+            @if !rows.is_empty() { (table("froude-law-table", caption, &columns, &rows)) }
+            @if !without.is_empty() {
+                p.note {
+                    "No law for " (without.join(", "))
+                    ": it takes three runs or more at two Froude numbers or more."
+                }
+            }
+        },
     ))
 }

@@ -25,7 +25,11 @@ pub(super) fn by_value(mut points: Vec<(f64, Point)>, apart: f64) -> Vec<Group> 
     }
     groups
         .into_iter()
-        .map(|(keys, group)| (keys.iter().sum::<f64>() / keys.len() as f64, group))
+        .map(|(keys, mut group)| {
+            // Keys of one group differ by chance; the points are joined in the order of the axis.
+            group.sort_by(|a, b| a.0.total_cmp(&b.0));
+            (keys.iter().sum::<f64>() / keys.len() as f64, group)
+        })
         .collect()
 }
 
@@ -59,5 +63,14 @@ mod tests {
         let groups = by_value(froude.map(|fr| (fr, point)).to_vec(), 0.01);
         let keys: Vec<_> = groups.iter().map(|group| (group.0 * 1e4).round()).collect();
         assert_eq!(keys, [0.0, 2000.0, 3000.0]);
+    }
+
+    #[test]
+    fn points_of_a_group_are_joined_from_left_to_right() {
+        let points = [(0.2003, 5.0), (0.1997, 7.0), (0.2, 6.0)];
+        let points = points.map(|(froude, w)| (froude, (w, 0.0, 0.0, 0.0)));
+        let groups = by_value(points.to_vec(), 0.01);
+        let xs: Vec<_> = groups[0].1.iter().map(|point| point.0).collect();
+        assert_eq!(xs, [5.0, 6.0, 7.0]);
     }
 }

@@ -1,5 +1,7 @@
 //! The page of the campaign: its parts in reading order.
 
+mod alike;
+mod at_speeds;
 mod conditions;
 mod damping_against_froude;
 mod equivalent_damping;
@@ -8,34 +10,37 @@ mod forced_runs;
 mod froude_law;
 mod groups;
 mod inertia;
+mod law_gaps;
 mod losses;
 mod particulars;
 mod peak_moment;
-mod recordings_without_runs;
+mod recordings_to_judge;
 mod rejected;
 mod runs;
 
 use maud::{Markup, html};
 
-use super::{document, field_units::FieldUnits, glossary};
+use super::{document, field_units::FieldUnits, figure::Figure, glossary};
 use crate::campaign::Campaign;
 use crate::inverse::identification::ForcedResponse;
 use crate::results::{IdentifiedRun, Results};
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&CampaignPage) -> Option<Markup>; 13] = [
-    particulars::part,
-    conditions::part,
+const PARTS: [fn(&CampaignPage) -> Option<Markup>; 15] = [
+    at_speeds::part,
+    law_gaps::part,
     damping_against_froude::part,
     froude_law::part,
     equivalent_damping::part,
+    conditions::part,
+    particulars::part,
     runs::part,
+    forced_runs::part,
+    forced_damping::part,
     inertia::part,
     peak_moment::part,
-    forced_damping::part,
-    forced_runs::part,
     rejected::part,
-    recordings_without_runs::part,
+    recordings_to_judge::part,
     losses::part,
 ];
 
@@ -79,12 +84,17 @@ impl<'a> CampaignPage<'a> {
 /// The page of the campaign.
 pub(super) fn html(campaign: &Campaign, results: &Results) -> Markup {
     let page = CampaignPage { campaign, results };
+    let (refused, changeovers) = rejected::parted(&page);
     let body = html! {
         h1 { (campaign.name) }
         p.lead {
             "Roll damping identified from " (counted(results.runs.len(), "run")) " in "
             (counted(results.overviews.len().max(campaign.recordings.len()), "recording")) "; "
-            (counted(results.rejected.len(), "stretch")) " not used."
+            (counted(refused.len(), "stretch")) " refused"
+            @if !changeovers.is_empty() {
+                ", " (counted(changeovers.len(), "changeover")) " between excitations left out"
+            }
+            ". Model scale, SI units; means with central 95 % credible intervals."
         }
         @if results.runs.is_empty() {
             p.warning { "No run was identified; the reasons are listed below." }
@@ -96,6 +106,11 @@ pub(super) fn html(campaign: &Campaign, results: &Results) -> Markup {
         (glossary::symbols())
     };
     document::page(&campaign.name, &body)
+}
+
+/// The figure of damping against Froude number, if a run was identified.
+pub(super) fn damping_figure(campaign: &Campaign, results: &Results) -> Option<Figure> {
+    damping_against_froude::figure(&CampaignPage { campaign, results })
 }
 
 fn counted(n: usize, noun: &str) -> String {

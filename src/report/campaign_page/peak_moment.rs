@@ -59,6 +59,7 @@ fn figures(page: &CampaignPage, number: usize, condition: &str) -> Vec<Figure> {
             (Axis::new("Froude number Fr [–]"), peak()),
             &groups::by_value(against_froude, FREQUENCY_APART_RAD_S),
             |w| format!("ω {} rad/s", fixed(w, 2)),
-        ),
+        )
+        .caption("The same runs, joined by frequency."),
     ]
 }

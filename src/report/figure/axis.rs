@@ -7,12 +7,13 @@ pub(crate) struct Axis {
     margin: f64,
     holds: Option<f64>,
     limits: Option<(f64, f64)>,
+    width_min: f64,
 }
 
 impl Axis {
     /// An axis that holds its data with a small margin.
     pub(crate) fn new(label: impl Into<String>) -> Self {
-        Self { label: label.into(), margin: 0.06, holds: None, limits: None }
+        Self { label: label.into(), margin: 0.06, holds: None, limits: None, width_min: 0.0 }
     }
 
     /// A time axis [s], which begins and ends with its data.
@@ -39,6 +40,12 @@ impl Axis {
         Self { limits, ..self }
     }
 
+    /// The same axis at least `width_min` wide, so that mere noise is not blown up.
+    #[must_use]
+    pub(crate) fn at_least(self, width_min: f64) -> Self {
+        Self { width_min, ..self }
+    }
+
     /// The label, with its unit.
     pub(crate) fn label(&self) -> &str {
         &self.label
@@ -58,6 +65,10 @@ impl Axis {
         }
         // A constant is drawn in the middle of a range of its own size.
         let width = hi - lo;
+        if width < self.width_min {
+            let middle = f64::midpoint(lo, hi);
+            return (middle - 0.5 * self.width_min, middle + 0.5 * self.width_min);
+        }
         if width <= 1e-9 * lo.abs().max(hi.abs()) || width == 0.0 {
             let half = if lo == 0.0 { 1.0 } else { 0.05 * lo.abs() };
             return (lo - half, hi + half);
@@ -79,7 +90,11 @@ pub(crate) struct SecondScale {
 
 /// Ticks at round numbers, with the labels written beside them.
 pub(super) fn ticks(lo: f64, hi: f64, n_max: usize) -> Vec<(f64, String)> {
-    let step = round_step((hi - lo) / n_max.max(1) as f64);
+    let mut step = round_step((hi - lo) / n_max.max(1) as f64);
+    // One tick alone tells no scale.
+    if (hi / step).floor() - (lo / step).ceil() < 1.0 {
+        step = round_step(0.5 * (hi - lo) / n_max.max(1) as f64);
+    }
     if !step.is_finite() || step <= 0.0 {
         return Vec::new();
     }
@@ -129,6 +144,17 @@ mod tests {
             ["\u{2212}0.010", "\u{2212}0.005", "0.000", "0.005", "0.010"]
         );
         assert_eq!(labels(3.0, 290.0), ["50", "100", "150", "200", "250"]);
+    }
+
+    #[test]
+    fn noise_is_drawn_on_an_axis_of_the_least_width() {
+        let range = Axis::new("V").at_least(0.1).range([0.999, 1.001].into_iter());
+        assert_eq!(range, (0.95, 1.05));
+    }
+
+    #[test]
+    fn an_axis_has_two_ticks_or_more() {
+        assert!(ticks(-0.45, 0.45, 4).len() >= 2);
     }
 
     #[test]

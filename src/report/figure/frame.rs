@@ -30,6 +30,7 @@ pub(super) type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 /// What goes between `<svg>` and `</svg>`.
 pub(super) struct Drawing {
     pub(super) view_box: String,
+    pub(super) size_px: (i32, i32),
     pub(super) elements: String,
 }
 
@@ -55,7 +56,7 @@ pub(super) fn drawing(figure: &Figure) -> Drawing {
         draw_all(&canvas, figure, &rows, top).expect("a string takes every drawing");
     }
     let view_box = format!("0 0 {} {}", WIDTH * UNITS, height * UNITS);
-    Drawing { view_box, elements: notation::svg(inner(&text)) }
+    Drawing { view_box, size_px: (WIDTH, height), elements: notation::svg(inner(&text)) }
 }
 
 /// The drawing without the backend's own `<svg>` element, which names a name space by its address.

@@ -151,6 +151,21 @@ impl Figure {
         }
     }
 
+    /// The figure as an SVG file that stands alone: its own size, a white ground, no style sheet.
+    pub(crate) fn file(&self) -> Markup {
+        let drawing = frame::drawing(self);
+        let (width, height) = drawing.size_px;
+        html! {
+            svg xmlns="http://www.w3.org/2000/svg" width=(width) height=(height)
+                viewBox=(drawing.view_box) stroke-linejoin="round" role="img" {
+                title { (notation::plain(&self.title)) }
+                desc { (self.description()) }
+                rect width="100%" height="100%" fill="#ffffff" {}
+                (PreEscaped(drawing.elements))
+            }
+        }
+    }
+
     /// What a screen reader says: the axes and the names of the curves.
     fn description(&self) -> String {
         let axes: Vec<_> = self.panels.iter().map(|panel| panel.y.label()).collect();

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::RunPage;
-use crate::inverse::identification::Chain;
+use crate::inverse::identification::{Chain, Trace};
 use crate::report::document::{number_cell, section, table};
 use crate::report::figure::{Axis, Figure, Hue, Ink, Panel};
 use crate::report::number::{fixed, significant};
@@ -53,16 +53,31 @@ fn summary(chain: &Chain) -> Markup {
 
 fn traces(chain: &Chain) -> Markup {
     let mut figure = Figure::new("traces", "Traces of some components", Axis::new("sweep").tight())
-        .caption("The shaded burn-in is not used.");
+        .caption(
+            "The shaded burn-in is not used; where it left the scale it is drawn on the edge.",
+        );
     for trace in chain.traces.iter().take(N_TRACES_MAX) {
         let sweep: Vec<_> = trace.sweep.iter().map(|&sweep| sweep as f64).collect();
         let burn_in = Ink::new(Hue::Grey).named("burn-in");
         figure = figure.panel(
-            Panel::new(Axis::new(trace.name.replace(" [", "\n[")))
+            Panel::new(axis(trace, chain.n_burn_in))
                 .height(84)
                 .stretch(0.0, chain.n_burn_in as f64, burn_in)
                 .line(&sweep, &trace.value, Ink::new(Hue::Blue).wide(0.7)),
         );
     }
     html! { @if !chain.traces.is_empty() { (figure.markup()) } }
+}
+
+/// The component with the symbols of the page, to the scale of what is used of its trace.
+fn axis(trace: &Trace, n_burn_in: usize) -> Axis {
+    let name = trace.name.replace(" [", "\n[").replace("lambda", "λ").replace("sigma", "σ");
+    let name = name.replace("[s4]", "[s⁴]").replace("s2]", "s²]");
+    let used = trace.sweep.iter().zip(&trace.value).filter(|(sweep, _)| **sweep >= n_burn_in);
+    let (lo, hi) = used
+        .map(|(_, &value)| value)
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)));
+    let margin = 0.2 * (hi - lo);
+    Axis::new(name).limited(lo - margin, hi + margin)
 }

@@ -30,7 +30,10 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
             })
             .collect()
     };
-    let correlation = fixed(page.identification().damping.correlation, 2);
+    let correlation = page.identification().damping.correlation;
+    let decimals = if correlation.abs() > 0.99 { 4 } else { 2 };
+    let inseparable = correlation < -0.99;
+    let correlation = fixed(correlation, decimals);
     Some(section(
         "coefficients",
         "Coefficients",
@@ -38,7 +41,12 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
             (table("law", LAW, &columns, &cells(law(page))))
             p { "Posterior correlation of b₁ and b₃: " b { (typeset(&correlation)) }
                 ". Near −1 the two trade against each other; " (notation::html("b_{eq}"))
-                " at an amplitude inside the run is then known far better than either." }
+                " at an amplitude inside the run is then known far better than either."
+                @if inseparable {
+                    b { " This run does not part b₁ from b₃: use "
+                        (notation::html("b_{eq}")) " at its amplitude." }
+                }
+            }
             (table("motion", "Motion and channel.", &columns, &cells(motion(page))))
         },
     ))

@@ -97,11 +97,8 @@ fn figure(page: &RunPage) -> Option<Figure> {
             &degrees,
             &ends(&law, |at| at.mean),
             Ink::new(Hue::Vermillion).wide(1.8).named("law b₁ + ¾ (ω_{n} A)² b₃"),
-        )
-        .error_bars(
-            &local,
-            Ink::new(Hue::Blue).shaped(Shape::OpenCircle).named("each half cycle, 95 % interval"),
         );
+    let panel = with_measured(page, panel, &local);
     Some(
         Figure::new(
             "equivalent-damping",
@@ -109,11 +106,26 @@ fn figure(page: &RunPage) -> Option<Figure> {
             Axis::new("roll amplitude A [deg]").holding(0.0),
         )
         .caption(
-            "Half cycles use no law; bars that leave the frame end at its edge. The law is drawn \
+            "Points use no law; bars that leave the frame end at its edge. The law is drawn \
              up to the largest roll of the run.",
         )
         .panel(panel),
     )
+}
+
+/// Adds what is known without the law: half cycles, or the work per cycle of a forced run.
+fn with_measured(page: &RunPage, mut panel: Panel, local: &[(f64, f64, f64, f64)]) -> Panel {
+    if !local.is_empty() {
+        let ink = Ink::new(Hue::Blue).shaped(Shape::OpenCircle);
+        panel = panel.error_bars(local, ink.named("each half cycle, 95 % interval"));
+    }
+    let forced = page.identification().forced.as_ref();
+    if let (Some(forced), Some(b)) = (forced, page.field_units().work_damping_per_s()) {
+        let amplitude_deg = forced.roll_amplitude_rad.mean.to_degrees();
+        let ink = Ink::new(Hue::Blue).named("work per cycle at A₁");
+        panel = panel.error_bars(&[(amplitude_deg, b.mean, b.lo95, b.hi95)], ink);
+    }
+    panel
 }
 
 fn law_ink() -> Ink {

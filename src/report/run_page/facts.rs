@@ -48,6 +48,15 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
             format!("{} rad/s", estimate(&identification.natural_frequency_rad_s)),
         ),
     ];
+    if let (Some(forced), Some(b)) = (&identification.forced, units.work_damping_per_s()) {
+        let amplitude = significant(forced.roll_amplitude_rad.mean.to_degrees(), 3);
+        let at = format!("at A₁ = {amplitude} deg");
+        rows.push(("b_{eq} from the work per cycle", format!("{} 1/s {at}", estimate(&b))));
+        let work = forced.work_damping_n_m_s;
+        rows.push(("B_{eq} from the work per cycle", format!("{} N m s {at}", estimate(&work))));
+        let b44 = work.scaled(units.b44_hat_per_n_m_s());
+        rows.push(("B̂₄₄ from the work per cycle", format!("{} {at}", estimate(&b44))));
+    }
     if let Some(at) = units.at_comparison() {
         let note = if at.extrapolated { " (not reached in this run)" } else { "" };
         let value = estimate(&at.fitted_per_s);

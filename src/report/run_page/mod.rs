@@ -5,6 +5,7 @@ mod coefficients;
 mod equivalent_damping;
 mod facts;
 mod forced;
+mod law_gaps;
 mod least_squares;
 mod moment;
 mod natural_frequency;
@@ -24,21 +25,22 @@ use crate::results::{IdentifiedRun, Overview, RejectedStretch};
 use crate::run::RunKind;
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&RunPage) -> Option<Markup>; 14] = [
+const PARTS: [fn(&RunPage) -> Option<Markup>; 15] = [
+    law_gaps::part,
     facts::part,
-    remarks::part,
     record::part,
     roll::part,
-    observable::part,
-    least_squares::part,
     moment::part,
     scatter::part,
-    coefficients::part,
     equivalent_damping::part,
-    natural_frequency::part,
+    coefficients::part,
     resimulation::part,
     forced::part,
+    natural_frequency::part,
+    observable::part,
+    least_squares::part,
     chain::part,
+    remarks::part,
 ];
 
 /// What the parts of the page are made from.

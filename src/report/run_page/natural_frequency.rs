@@ -16,7 +16,7 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
     let amplitude: Vec<_> = half_cycles.iter().map(|at| at.amplitude_rad.to_degrees()).collect();
     let frequency: Vec<_> = half_cycles.iter().map(|at| at.frequency_rad_s).collect();
     let largest = amplitude.iter().copied().fold(0.0, f64::max);
-    let panel = Panel::new(Axis::new("frequency ω [rad/s]"))
+    let panel = Panel::new(axis(page, &frequency))
         .height(180)
         .band(
             &[0.0, largest],
@@ -39,7 +39,24 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
         "Frequency of each half cycle against its amplitude",
         Axis::new("roll amplitude A [deg]").holding(0.0),
     )
-    .caption("A trend with amplitude points to a restoring moment that is not linear.")
+    .caption(
+        "A trend with amplitude points to a restoring moment that is not linear. The scale holds \
+         half cycles above ten times the noise; smaller ones may stand on its edge.",
+    )
     .panel(panel);
     Some(section("natural-frequency-section", "Natural frequency", &figure.markup()))
+}
+
+/// Holds the half cycles whose crossings the noise hardly moves, not the last, smallest ones.
+fn axis(page: &RunPage, frequency: &[f64]) -> Axis {
+    let axis = Axis::new("frequency ω [rad/s]");
+    let identification = page.identification();
+    let w = identification.natural_frequency_rad_s;
+    let least_rad = 10.0 * identification.roll_noise_rad.mean;
+    let known = identification.half_cycles.iter().zip(frequency);
+    let (lo, hi) = known
+        .filter(|(at, _)| at.amplitude_rad >= least_rad)
+        .fold((w.lo95, w.hi95), |(lo, hi), (_, &w)| (lo.min(w), hi.max(w)));
+    let margin = 0.15 * (hi - lo);
+    axis.limited(lo - margin, hi + margin)
 }

@@ -8,6 +8,9 @@ use crate::report::figure::{Axis, Figure, Hue, Ink, Panel};
 use crate::report::number::fixed;
 use crate::run::Series;
 
+/// Least width of the axis of speed [m/s]; the noise of an encoder is far below.
+const SPEED_WIDTH_M_S: f64 = 0.2;
+
 pub(super) fn part(page: &RunPage) -> Option<Markup> {
     let overview = page.overview?;
     if overview.roll.time_s.is_empty() {
@@ -16,17 +19,18 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
     let rejected: Vec<_> =
         page.rejected.iter().filter(|stretch| stretch.recording == page.run.recording).collect();
     let mut figure = Figure::new("record", "The recording", Axis::time()).caption(
-        "Lowest and highest value of each short stretch; the marked run is the one of this page.",
+        "Lowest and highest value of each short stretch, as far as the recording was read when \
+         the run ended; the campaign report lists what was not used.",
     );
-    for (label, series, height) in [
-        ("roll φ [deg]", &roll_in_degrees(&overview.roll), 170),
-        ("speed V [m/s]", &overview.speed, 90),
-        (drive_label(page), &overview.drive, 110),
+    for (label, series, height, least) in [
+        ("roll φ [deg]", &roll_in_degrees(&overview.roll), 170, 0.0),
+        ("speed V [m/s]", &overview.speed, 90, SPEED_WIDTH_M_S),
+        (drive_label(page), &overview.drive, 110, 0.0),
     ] {
         if series.time_s.is_empty() {
             continue;
         }
-        let mut panel = Panel::new(Axis::new(label)).height(height);
+        let mut panel = Panel::new(Axis::new(label).at_least(least)).height(height);
         if let Some(still) = page.run.run.still {
             let ink = Ink::new(Hue::Green).named("still stretch");
             panel = panel.stretch(still.start_s, still.end_s, ink);

@@ -7,6 +7,9 @@ use crate::report::document::section;
 use crate::report::figure::{Axis, Figure, Hue, Ink, Panel};
 use crate::report::number::significant;
 
+/// Residual over noise above which a reader is told that more than noise is left.
+const STRUCTURE: f64 = 1.5;
+
 pub(super) fn part(page: &RunPage) -> Option<Markup> {
     let again = &page.identification().resimulation;
     if again.time_s.is_empty() {
@@ -19,8 +22,17 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
         .map(|(measured, simulated)| (measured - simulated).to_degrees())
         .collect();
     let noise = page.identification().roll_noise_rad.mean.to_degrees();
+    let ratio = again.rmse_rad.to_degrees() / noise;
+    let structure = if ratio > STRUCTURE {
+        format!(
+            " The residual is {} times the noise: the fitted model leaves a part of the motion over.",
+            significant(ratio, 2)
+        )
+    } else {
+        String::new()
+    };
     let caption = format!(
-        "Residual rmse {} deg; the noise of the roll channel is estimated as {} deg.",
+        "Residual rmse {} deg; the noise of the roll channel is estimated as {} deg.{structure}",
         significant(again.rmse_rad.to_degrees(), 3),
         significant(noise, 2)
     );

@@ -10,6 +10,9 @@ use crate::report::figure::{Axis, Figure, Hue, Ink, Panel, Shape};
 /// Points of the fitted law, an odd number so that zero is one of them.
 const N_LAW: i32 = 81;
 
+/// Times the usual standard deviation above which a sample of the moment is barely known.
+const VAGUE: f64 = 1.5;
+
 pub(super) fn part(page: &RunPage) -> Option<Markup> {
     let (moment, fit) = (&page.identification().moment, &page.identification().damping);
     let rate_max = moment.roll_rate_rad_per_s.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
@@ -20,12 +23,21 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
     let half = N_LAW / 2;
     let rate: Vec<_> = (-half..=half).map(|k| rate_max * f64::from(k) / f64::from(half)).collect();
     let law: Vec<_> = rate.iter().map(|&rate| fitted_damping(fit, rate)).collect();
+    let mut sds = moment.sd_per_s2.clone();
+    sds.sort_by(f64::total_cmp);
+    let usual = sds.get(sds.len() / 2).copied().unwrap_or(0.0);
+    let vague = |k: usize| moment.sd_per_s2.get(k).is_some_and(|sd| *sd > VAGUE * usual);
     let panel = Panel::new(Axis::new("B/(I+ΔI) = −U [rad/s²]"))
         .height(300)
         .points(
-            &moment.roll_rate_rad_per_s,
-            &damping,
+            &part_of(&moment.roll_rate_rad_per_s, |k| !vague(k)),
+            &part_of(&damping, |k| !vague(k)),
             Ink::new(Hue::Grey).shaped(Shape::Dot).named("posterior mean, sample by sample"),
+        )
+        .points(
+            &part_of(&moment.roll_rate_rad_per_s, vague),
+            &part_of(&damping, vague),
+            Ink::new(Hue::Orange).shaped(Shape::Dot).named("barely known, at the ends"),
         )
         .band(
             &rate,
@@ -40,7 +52,15 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
         );
     let figure =
         Figure::new("scatter", "Damping against roll rate", Axis::new("roll rate φ′ [rad/s]"))
-            .caption("A loop instead of a curve would mean a moment in phase with the roll angle.")
+            .caption(
+                "A loop instead of a curve would mean a moment in phase with the roll angle. \
+                 Orange: standard deviation above 1.5 times the median, as at the ends of a run.",
+            )
             .panel(panel);
     Some(section("scatter-section", "Damping against roll rate", &figure.markup()))
+}
+
+fn part_of(values: &[f64], kept: impl Fn(usize) -> bool) -> Vec<f64> {
+    let all = values.iter().enumerate();
+    all.filter(|&(index, _)| kept(index)).map(|(_, &value)| value).collect()
 }
