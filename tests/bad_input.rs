@@ -199,6 +199,41 @@ fn a_broken_toml_file_is_told_with_its_line() {
     tells(&refused(&campaign, 2), &["campaign.toml:2: ", "hint: "]);
 }
 
+#[test]
+fn check_ends_as_a_replay_of_a_bad_recording_would() {
+    let campaign = CampaignFolder::new();
+    campaign.replace_row(1200, "11.980,n/a");
+    refused(&campaign, 1);
+    let told = rolltank(campaign.path(), &["check", "."]);
+    assert_eq!(told.exit, 1, "{}", told.err);
+    tells(&told.err, &["campaign.toml:13: ", "line 1200", "hint: "]);
+}
+
+#[test]
+fn a_clock_reading_for_a_time_is_told_with_the_way_around_it() {
+    let campaign = CampaignFolder::new();
+    campaign.replace_row(2, "10:15:00.000,0.1");
+    tells(&refused(&campaign, 1), &["line 2", "\"10:15:00.000\"", "sample_rate_hz"]);
+}
+
+#[test]
+fn an_umlaut_of_another_encoding_is_told_with_its_line() {
+    let campaign = CampaignFolder::new();
+    let latin1 = CAMPAIGN.replace("bare hull", "Sch\u{0}rze").into_bytes();
+    let latin1: Vec<u8> = latin1.iter().map(|&b| if b == 0 { 0xfc } else { b }).collect();
+    campaign.write("campaign.toml", latin1);
+    tells(&refused(&campaign, 2), &["campaign.toml:15: ", "UTF-8", "hint: save the file"]);
+}
+
+#[test]
+fn a_table_beside_its_own_import_is_not_counted_twice() {
+    let campaign = CampaignFolder::new();
+    let unlisted = CAMPAIGN.split("[[recording]]").next().unwrap();
+    campaign.write("campaign.toml", unlisted);
+    assert_eq!(rolltank(campaign.path(), &["import", ".", "-o", "."]).exit, 0);
+    tells(&refused(&campaign, 2), &["pass_01.csv", "pass_01.mcap", "twice", "hint: "]);
+}
+
 proptest! {
     #[test]
     fn a_campaign_file_damaged_anywhere_is_read_or_told_with_lines_that_it_has(

@@ -29,3 +29,4 @@ mod the_report_is_complete_and_self_contained;
 mod the_simulated_tank_keeps_its_script;
 mod the_simulated_tank_writes_campaigns;
 mod the_tables_and_the_catalogue_agree_with_the_results;
+mod wrong_units;

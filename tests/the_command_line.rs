@@ -91,6 +91,37 @@ fn pages_of_runs_that_are_no_more_do_not_stay() {
 }
 
 #[test]
+fn pages_of_an_earlier_report_do_not_stay_in_its_folder_and_pages_of_others_do() {
+    let campaign = CampaignFolder::new();
+    campaign.write("pass_02.csv", super::campaign_folder::decay(0.0));
+    let second = "[[recording]]\nfile = \"pass_02.csv\"\n";
+    campaign.write("campaign.toml", format!("{CAMPAIGN}{second}"));
+    let elsewhere = tempfile::tempdir().unwrap();
+    let dir = elsewhere.path();
+    std::fs::write(dir.join("run-mine.html"), "the test leader's own").unwrap();
+    let report = ["report", ".", "-o", dir.to_str().unwrap()];
+    assert_eq!(rolltank(campaign.path(), &report).exit, 0);
+    assert!(dir.join("run-pass_02-1.html").exists());
+    campaign.write("campaign.toml", CAMPAIGN);
+    assert_eq!(rolltank(campaign.path(), &report).exit, 0);
+    assert!(!dir.join("run-pass_02-1.html").exists());
+    assert!(dir.join("run-pass_01-1.html").exists() && dir.join("run-mine.html").exists());
+}
+
+#[test]
+fn a_report_among_the_recordings_is_refused_because_its_tables_would_be_read_as_some() {
+    let campaign = CampaignFolder::new();
+    for dir in [".", "report", "a/b"] {
+        let told = rolltank(campaign.path(), &["report", ".", "-o", dir]);
+        assert_eq!(told.exit, 2, "{}", told.err);
+        assert!(told.err.contains("inside the campaign folder"), "{}", told.err);
+        assert!(told.err.contains("hint: name a folder outside"), "{}", told.err);
+    }
+    assert_eq!(rolltank(campaign.path(), &["report", ".", "-o", "results/appendix"]).exit, 0);
+    assert!(campaign.path().join("results/appendix/index.html").is_file());
+}
+
+#[test]
 fn imported_recordings_give_the_runs_of_their_tables() {
     let campaign = CampaignFolder::new();
     let table = rolltank(campaign.path(), &["identify", ".", "--json"]);

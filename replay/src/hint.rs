@@ -13,7 +13,10 @@ impl ReplayError {
             Self::Open { source, .. } if source.kind() == io::ErrorKind::NotFound => {
                 Some("check the path; it is relative to the campaign folder".to_owned())
             }
-            Self::Empty { .. } | Self::NoMessages { .. } => {
+            Self::Open { .. } | Self::Read { .. } => {
+                Some("check that the file may be read and that its disk is there".to_owned())
+            }
+            Self::Empty { .. } | Self::HeaderOnly { .. } | Self::NoMessages { .. } => {
                 Some("nothing was recorded, or it was lost at once; take the file out".to_owned())
             }
             Self::Utf16 { .. } => Some("save the table as UTF-8".to_owned()),
@@ -28,7 +31,7 @@ impl ReplayError {
             Self::NoTimeBase { .. } => {
                 Some("give time or sample_rate_hz in [columns] of the campaign file".to_owned())
             }
-            Self::Cell { fault, .. } => Some(cell_hint(*fault).to_owned()),
+            Self::Cell { fault, text, .. } => Some(cell_hint(*fault, text).to_owned()),
             Self::RowLength { .. } => {
                 Some("a line was cut in two or lost its end; mend or remove it".to_owned())
             }
@@ -82,8 +85,12 @@ fn near_column(column: &str, present: &[String]) -> String {
     }
 }
 
-fn cell_hint(fault: CellFault) -> &'static str {
+fn cell_hint(fault: CellFault, text: &str) -> &'static str {
     match fault {
+        CellFault::NotNumber if text.contains(':') => {
+            "a time is a number since some start, not a clock's reading; export it so, or leave \
+             time out and give sample_rate_hz in [columns] instead"
+        }
         CellFault::NotNumber => "correct the cell, or empty it if the sample is missing",
         CellFault::NotFinite => "empty the cell if the sample is missing",
         CellFault::CommaInside => {

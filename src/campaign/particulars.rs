@@ -115,8 +115,17 @@ pub(super) fn tank(section: Option<&Section<'_>>, hull: Option<&Hull>) -> Tank {
 }
 
 /// Reads `[exciter]`.
-pub(super) fn exciter(section: &Section<'_>) -> Option<Exciter> {
+pub(super) fn exciter(section: &Section<'_>, hull: Option<&Hull>) -> Option<Exciter> {
     let moment_arm_m = section.required_number("moment_arm_m", &POSITIVE);
+    if let (Some(arm_m), Some(Hull { length_pp_m, .. })) = (moment_arm_m, hull)
+        && arm_m > *length_pp_m
+    {
+        section.mistake(
+            "moment_arm_m",
+            format!("moment_arm_m = {arm_m} m is longer than the model, {length_pp_m} m"),
+            "moment_arm_m is in metres; 430 mm are 0.43",
+        );
+    }
     let force_sign = section.number("force_sign", &SIGN).unwrap_or(1.0);
     let rod_length_m = section.number("rod_length_m", &POSITIVE);
     let arm = match section.text("arm") {

@@ -1,6 +1,7 @@
 //! Reading `campaign.toml` to its end, so that every mistake in it is known at once.
 
 use std::path::Path;
+use std::string::FromUtf8Error;
 
 use devices::Quantity;
 use replay::Columns;
@@ -18,7 +19,8 @@ pub const FILE_NAME: &str = "campaign.toml";
 /// Every mistake in the file, in the order of its lines.
 pub fn read(folder: &Path) -> Result<Campaign, Vec<Mistake>> {
     let path = folder.join(FILE_NAME);
-    let text = std::fs::read_to_string(&path).map_err(|error| vec![unreadable(folder, &error)])?;
+    let bytes = std::fs::read(&path).map_err(|error| vec![unreadable(folder, &error)])?;
+    let text = String::from_utf8(bytes).map_err(|error| vec![not_utf8(folder, &error)])?;
     let source = Source::new(path.display().to_string(), &text);
     let Some(tree) = source.parse() else { return Err(source.into_mistakes()) };
     let campaign = whole(&source, &source.root(tree.get_ref()), folder);
@@ -33,7 +35,8 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
     let hull = root.required_section("hull").and_then(|section| particulars::hull(&section));
     let water = particulars::water(root.section("water").as_ref());
     let tank = particulars::tank(root.section("tank").as_ref(), hull.as_ref());
-    let exciter = root.section("exciter").and_then(|section| particulars::exciter(&section));
+    let exciter =
+        root.section("exciter").and_then(|section| particulars::exciter(&section, hull.as_ref()));
     let columns = root.section("columns").map(|section| columns::read(&section));
     let known = columns.clone().unwrap_or_default();
     let recordings = if root.holds("recording") {
@@ -68,7 +71,20 @@ fn found(source: &Source<'_>, folder: &Path) -> Vec<Recording> {
             source.add(None, "the folder holds no recording".to_owned(), Some(hint.to_owned()));
             Vec::new()
         }
-        Ok(paths) => recordings::found(folder, paths),
+        Ok(paths) => {
+            for (table, copy) in recordings::copies(&paths) {
+                source.add(
+                    None,
+                    format!(
+                        "\"{}\" and \"{}\" have one name, so that every run would count twice",
+                        table.display(),
+                        copy.display()
+                    ),
+                    Some("name the one to read in a [[recording]] table".to_owned()),
+                );
+            }
+            recordings::found(folder, paths)
+        }
         Err(error) => {
             source.add(None, format!("the folder cannot be searched: {error}"), None);
             Vec::new()
@@ -137,5 +153,15 @@ fn unreadable(folder: &Path, error: &std::io::Error) -> Mistake {
         line: None,
         message: format!("cannot be read: {}", error.to_string().to_lowercase()),
         hint: Some(hint),
+    }
+}
+
+fn not_utf8(folder: &Path, error: &FromUtf8Error) -> Mistake {
+    let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+    Mistake {
+        file: folder.join(FILE_NAME).display().to_string(),
+        line: Some(1 + before.iter().filter(|byte| **byte == b'\n').count()),
+        message: "a letter is not encoded in UTF-8".to_owned(),
+        hint: Some("save the file as UTF-8, which an umlaut or a degree sign needs".to_owned()),
     }
 }

@@ -1,6 +1,6 @@
 //! The `[[recording]]` tables: which files were recorded, under which condition, at which speed.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
 use devices::Quantity;
@@ -45,10 +45,27 @@ pub(super) fn read(
     recordings
 }
 
+/// Tables with an MCAP file of the same name beside them: what an import of the table leaves.
+pub(super) fn copies(paths: &[PathBuf]) -> Vec<(&Path, &Path)> {
+    let (mcap, tables): (Vec<&PathBuf>, _) =
+        paths.iter().partition(|path| is_self_describing(path));
+    let beside = |table: &PathBuf| {
+        mcap.iter().find(|path| path.with_extension("") == table.with_extension("")).copied()
+    };
+    tables
+        .into_iter()
+        .filter_map(|table| Some((table.as_path(), beside(table)?.as_path())))
+        .collect()
+}
+
 /// Every recording found in the folder, when the campaign file lists none.
+///
+/// A file and the links to it are one recording.
 pub(super) fn found(folder: &Path, paths: Vec<PathBuf>) -> Vec<Recording> {
+    let mut seen = BTreeSet::new();
     paths
         .into_iter()
+        .filter(|path| seen.insert(resolved(path)))
         .map(|path| Recording {
             name: slashed(path.strip_prefix(folder).unwrap_or(&path)),
             files: vec![(None, path)],
@@ -140,6 +157,8 @@ fn existing(section: &Section<'_>, key: &str, written: &str, folder: &Path) -> O
     }
     let message = if path.is_dir() {
         format!("recording \"{written}\" is a folder, expected a file")
+    } else if path.is_symlink() {
+        format!("recording \"{written}\" is a link to a file that is not there")
     } else {
         format!("recording \"{written}\" is not there")
     };
@@ -156,6 +175,7 @@ fn near_file(path: &Path, folder: &Path) -> String {
         .collect();
     names.sort();
     let wanted = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    names.retain(|name| name != wanted);
     let known: Vec<&str> = names.iter().map(String::as_str).collect();
     nearest(wanted, &known).map_or_else(
         || format!("file names are relative to {}", folder.display()),

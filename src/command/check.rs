@@ -27,15 +27,22 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
-    let (mistakes, recordings) = match campaign::read(&arguments.campaign) {
-        Err(mistakes) => (mistakes, Vec::new()),
-        Ok(campaign) => survey(&campaign),
+    let (mistakes, unreadable, recordings) = match campaign::read(&arguments.campaign) {
+        Err(mistakes) => (mistakes, Vec::new(), Vec::new()),
+        Ok(campaign) => {
+            let (unreadable, recordings) = survey(&campaign);
+            (campaign.unreachable_speeds(), unreadable, recordings)
+        }
     };
-    let exit = match (&mistakes[..], recordings.iter().any(has_lost_data)) {
-        ([], false) => Exit::Done,
-        ([], true) => Exit::Incomplete,
+    // The same codes with which a replay of this campaign would end.
+    let exit = match (&mistakes[..], &unreadable[..], recordings.iter().any(has_lost_data)) {
+        ([], [], false) => Exit::Done,
+        ([], [], true) => Exit::Incomplete,
+        ([], _, _) => Exit::Failed,
         _ => Exit::Usage,
     };
+    let mut mistakes = [mistakes, unreadable].concat();
+    mistakes.sort_by_key(|mistake| mistake.line);
     if arguments.json {
         let recordings: Vec<Value> = recordings.iter().map(surveyed_json).collect();
         let ok = mistakes.is_empty();
@@ -47,8 +54,10 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     for surveyed in &recordings {
         tell(out, surveyed)?;
     }
-    if !mistakes.is_empty() {
-        return Err(Failure::Campaign { mistakes });
+    match exit {
+        Exit::Usage => return Err(Failure::Campaign { mistakes }),
+        Exit::Failed => return Err(Failure::Recordings { mistakes }),
+        Exit::Done | Exit::Incomplete => {}
     }
     writeln!(out, "no mistake found")?;
     Ok(exit)
@@ -59,7 +68,7 @@ fn has_lost_data(surveyed: &Surveyed) -> bool {
 }
 
 fn survey(campaign: &Campaign) -> (Vec<Mistake>, Vec<Surveyed>) {
-    let mut mistakes = campaign.unreachable_speeds();
+    let mut unreadable = Vec::new();
     let mut recordings = Vec::new();
     let terminal = Terminal::new();
     let surveyed = pipeline::survey(campaign, &mut |recording, done, total| {
@@ -68,11 +77,10 @@ fn survey(campaign: &Campaign) -> (Vec<Mistake>, Vec<Surveyed>) {
     for (recording, surveyed) in campaign.recordings.iter().zip(surveyed) {
         match surveyed {
             Ok(surveyed) => recordings.push(surveyed),
-            Err(error) => mistakes.push(mistake(campaign, recording.line, &error)),
+            Err(error) => unreadable.push(mistake(campaign, recording.line, &error)),
         }
     }
-    mistakes.sort_by_key(|mistake| mistake.line);
-    (mistakes, recordings)
+    (unreadable, recordings)
 }
 
 fn mistake(campaign: &Campaign, line: Option<usize>, error: &PipelineError) -> Mistake {

@@ -69,6 +69,20 @@ pub enum Failure {
         /// The folder.
         path: PathBuf,
     },
+    /// A report among the recordings, where its tables would be read as some.
+    #[error("\"{}\" is inside the campaign folder, among its recordings", path.display())]
+    InsideCampaign {
+        /// The folder for the report.
+        path: PathBuf,
+        /// The folder for the results of the campaign.
+        results: PathBuf,
+    },
+    /// Recordings that cannot be read.
+    #[error("{} recording(s) cannot be read", mistakes.len())]
+    Recordings {
+        /// What is wrong with each.
+        mistakes: Vec<Mistake>,
+    },
     /// Standard output cannot be written.
     #[error("standard output")]
     Output {
@@ -88,7 +102,10 @@ impl Failure {
     /// How the command ends.
     pub fn exit(&self) -> Exit {
         match self {
-            Self::Campaign { .. } | Self::Scenario { .. } | Self::NotFresh { .. } => Exit::Usage,
+            Self::Campaign { .. }
+            | Self::Scenario { .. }
+            | Self::NotFresh { .. }
+            | Self::InsideCampaign { .. } => Exit::Usage,
             _ => Exit::Failed,
         }
     }
@@ -100,7 +117,7 @@ impl Failure {
 
     /// Writes the error, its causes and its hints.
     pub fn tell(&self, err: &mut dyn Write) -> io::Result<()> {
-        if let Self::Campaign { mistakes } = self {
+        if let Self::Campaign { mistakes } | Self::Recordings { mistakes } = self {
             for mistake in mistakes {
                 writeln!(err, "error: {mistake}")?;
                 if let Some(hint) = &mistake.hint {
@@ -118,6 +135,12 @@ impl Failure {
         match self {
             Self::Replay { source } => source.hint(),
             Self::Import { source } => source.hint(),
+            Self::File { .. } => {
+                Some("check that the folder can be written and that the disk has room".to_owned())
+            }
+            Self::InsideCampaign { results, .. } => {
+                Some(format!("name a folder outside, or one below \"{}\"", results.display()))
+            }
             Self::NotFresh { .. } => {
                 Some("name a new folder with -o; nothing is ever overwritten".to_owned())
             }

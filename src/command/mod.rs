@@ -27,7 +27,8 @@ pub use failure::Failure;
 #[derive(Debug, Parser)]
 #[command(name = "rolltank", version, arg_required_else_help = true)]
 #[command(after_help = "Exit codes: 0 done; 1 failed; 2 wrong usage or campaign file; \
-    3 finished, with data lost or runs rejected that were asked for.")]
+    3 finished, but data was lost, or a listed recording or the whole campaign gave no run.\n\
+    Stretches that are rejected beside the runs of a recording are no failure.")]
 pub struct CommandLine {
     #[command(subcommand)]
     command: Command,

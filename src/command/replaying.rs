@@ -15,7 +15,8 @@ use crate::results::Results;
 pub(super) struct Replayed {
     /// Runs, rejections, laws.
     pub(super) results: Results,
-    /// Done, or incomplete when data was lost or a listed recording gave no run.
+    /// Done, or incomplete when data was lost, or a listed recording or the whole campaign gave no
+    /// run.
     pub(super) exit: Exit,
 }
 
@@ -58,11 +59,10 @@ pub(super) fn replay(
     if let Some(dir) = into {
         pipeline::write_results(campaign, &results, dir)?;
     }
-    let unanswered = pipeline::unanswered(campaign, &results);
-    for sentence in &unanswered {
+    for sentence in pipeline::without_runs(&results) {
         tracing::warn!("{sentence}");
     }
-    let complete = n_lost == 0 && unanswered.is_empty();
+    let complete = n_lost == 0 && !pipeline::is_unanswered(campaign, &results);
     Ok(Replayed { results, exit: if complete { Exit::Done } else { Exit::Incomplete } })
 }
 

@@ -26,6 +26,7 @@ mod identify_decay;
 mod identify_forced;
 mod observed;
 mod paper_method;
+mod plausible;
 
 use identification::{Identification, Method};
 
@@ -52,6 +53,7 @@ pub struct Setting {
 /// # Errors
 /// The reason, as a sentence with its values, why the run cannot be identified.
 pub fn identify(run: &Run, setting: &Setting) -> Result<Identification, String> {
+    plausible::roll(run)?;
     match run.kind {
         RunKind::Decay => identify_decay::identify(run, setting),
         RunKind::Forced => identify_forced::identify(run, setting),

@@ -4,6 +4,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use serde_json::Value;
+
 use crate::campaign::Campaign;
 use crate::catalogue::{self, CatalogueError};
 use crate::report::{self, ReportError};
@@ -11,6 +13,9 @@ use crate::results::{IdentifiedRun, Overview, Results};
 
 /// The campaign's page in a report folder.
 pub const REPORT_PAGE: &str = "index.html";
+
+/// The identification of the JSON contract in a report folder.
+const IDENTIFICATION: &str = "identification.json";
 
 /// The run catalogue in a report folder.
 const CATALOGUE: &str = "catalogue.sqlite";
@@ -62,19 +67,18 @@ pub fn write_run_page(
 
 /// Writes everything but the pages of single runs; returns the path of the campaign's page.
 ///
-/// In the campaign's own results folder, pages of runs that are no more are removed.
+/// Pages of runs that are no more are removed: in the campaign's own results folder all of them, in
+/// another folder those of the report that was there before.
 pub fn write_results(
     campaign: &Campaign,
     results: &Results,
     dir: &Path,
 ) -> Result<PathBuf, WriteError> {
+    remove_stale_pages(campaign, results, dir)?;
     report::csv_tables(campaign, results, dir)?;
-    write_text(dir, "identification.json", &report::identification_json(campaign, results))?;
+    write_text(dir, IDENTIFICATION, &report::identification_json(campaign, results))?;
     write_text(dir, "identification.schema.json", report::IDENTIFICATION_SCHEMA)?;
     catalogue::write(&dir.join(CATALOGUE), campaign, results)?;
-    if dir == results_folder(campaign) {
-        remove_stale_pages(results, dir)?;
-    }
     Ok(report::write_campaign(campaign, results, dir)?)
 }
 
@@ -84,18 +88,37 @@ fn write_text(dir: &Path, name: &str, text: &str) -> Result<(), WriteError> {
 }
 
 /// Removes the pages that an earlier replay wrote for runs that are no more.
-fn remove_stale_pages(results: &Results, dir: &Path) -> Result<(), WriteError> {
+fn remove_stale_pages(
+    campaign: &Campaign,
+    results: &Results,
+    dir: &Path,
+) -> Result<(), WriteError> {
     let at = |path: &Path| {
         let path = path.to_owned();
         |source| WriteError::File { path, source }
     };
+    fs::create_dir_all(dir).map_err(at(dir))?;
+    let earlier = earlier_ids(dir);
+    let all_are_ours = dir == results_folder(campaign);
     for entry in fs::read_dir(dir).map_err(at(dir))? {
         let path = entry.map_err(at(dir))?.path();
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         let id = name.strip_prefix("run-").and_then(|name| name.strip_suffix(".html"));
-        if id.is_some_and(|id| !results.runs.iter().any(|run| run.id == id)) {
+        let is_stale = id.is_some_and(|id| {
+            (all_are_ours || earlier.iter().any(|earlier| earlier == id))
+                && !results.runs.iter().any(|run| run.id == id)
+        });
+        if is_stale {
             fs::remove_file(&path).map_err(at(&path))?;
         }
     }
     Ok(())
+}
+
+/// Ids of the runs whose report is in the folder already; none when there is none of ours.
+fn earlier_ids(dir: &Path) -> Vec<String> {
+    let text = fs::read_to_string(dir.join(IDENTIFICATION)).unwrap_or_default();
+    let earlier: Value = serde_json::from_str(&text).unwrap_or_default();
+    let runs = earlier["runs"].as_array().into_iter().flatten();
+    runs.filter_map(|run| Some(run["id"].as_str()?.to_owned())).collect()
 }

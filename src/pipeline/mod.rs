@@ -132,13 +132,44 @@ pub fn replay(
     })
 }
 
-/// The listed recordings in which no run could be identified, as sentences.
+/// The recordings in which no run could be identified, as sentences that say why.
+pub fn without_runs(results: &Results) -> Vec<String> {
+    let empty = results.overviews.iter().filter(|overview| !has_run(results, &overview.recording));
+    empty.map(|overview| without_run(overview, results)).collect()
+}
+
+fn without_run(Overview { recording, roll, .. }: &Overview, results: &Results) -> String {
+    let rejected = results.rejected.iter().filter(|stretch| stretch.recording == *recording);
+    let n_rejected = rejected.count();
+    if n_rejected > 0 {
+        let stretches = if n_rejected == 1 { "stretch" } else { "stretches" };
+        return format!(
+            "recording \"{recording}\" gave no run: {n_rejected} rejected {stretches} told with \
+             the results"
+        );
+    }
+    let (Some(first_s), Some(last_s)) = (roll.time_s.first(), roll.time_s.last()) else {
+        return format!("recording \"{recording}\" gave no run: it holds no roll");
+    };
+    let low_rad = roll.value.iter().copied().fold(f64::INFINITY, f64::min);
+    let high_rad = roll.value.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    format!(
+        "recording \"{recording}\" gave no run: {:.3} s with roll from {:.3} to {:.3} deg; hint: \
+         check the units of roll and time in [columns]",
+        last_s - first_s,
+        low_rad.to_degrees(),
+        high_rad.to_degrees()
+    )
+}
+
+/// Whether a listed recording, or the campaign as a whole, gave no run.
 ///
-/// Recordings that were merely found in the folder were not asked for by name.
-pub fn unanswered(campaign: &Campaign, results: &Results) -> Vec<String> {
-    let listed = campaign.recordings.iter().filter(|recording| recording.line.is_some());
-    listed
-        .filter(|recording| !results.runs.iter().any(|run| run.recording == recording.name))
-        .map(|recording| format!("recording \"{}\" gave no run", recording.name))
-        .collect()
+/// A single recording that was merely found in the folder was not asked for by name.
+pub fn is_unanswered(campaign: &Campaign, results: &Results) -> bool {
+    let mut listed = campaign.recordings.iter().filter(|recording| recording.line.is_some());
+    results.runs.is_empty() || listed.any(|recording| !has_run(results, &recording.name))
+}
+
+fn has_run(results: &Results, recording: &str) -> bool {
+    results.runs.iter().any(|run| run.recording == recording)
 }

@@ -98,8 +98,9 @@ impl Spell {
                 self.start_s.min(after_s)
             ),
             Fault::OutOfRange { value, limit } => format!(
-                "{name} of {value:.3} {unit} is beyond {limit:.2} {unit}; hint: check the unit of \
-                 the channel"
+                "{name} of {} {unit} is beyond {limit:.2} {unit}; hint: check the unit of the \
+                 channel",
+                short(value)
             ),
         };
         Event::Rejected(Rejection {
@@ -108,4 +109,9 @@ impl Spell {
             reason: format!("{n} samples of {name} passed over: {why}"),
         })
     }
+}
+
+/// A number whose digits stay few, however large it is.
+fn short(value: f64) -> String {
+    if value.abs() < 1e9 { format!("{value:.3}") } else { format!("{value:.3e}") }
 }

@@ -1,0 +1,60 @@
+//! Refuses numbers that no model test has and only a wrong unit makes.
+
+use std::f64::consts::FRAC_PI_2;
+use std::ops::RangeInclusive;
+
+use super::forced::SteadyResponse;
+use crate::run::Run;
+
+/// Damping ratios of a rolling model [-]: a round bare hull has about 0.005, large keels at speed
+/// 0.3; a force that is wrong by a factor of 1000 leaves the range from anywhere between.
+const DAMPING_RATIO: RangeInclusive<f64> = 0.0005..=2.0;
+/// Frequencies of forced rolling as a share of the natural one [-], with a wide margin.
+const FREQUENCY_SHARE: RangeInclusive<f64> = 0.1..=10.0;
+
+/// Refuses a roll that turns a model over.
+pub(super) fn roll(run: &Run) -> Result<(), String> {
+    let bound = |pick: fn(f64, f64) -> f64| run.roll.value.iter().copied().reduce(pick);
+    let (low, high) = (bound(f64::min).unwrap_or(0.0), bound(f64::max).unwrap_or(0.0));
+    let amplitude_rad = 0.5 * (high - low);
+    if amplitude_rad > FRAC_PI_2 {
+        return Err(format!(
+            "the roll has an amplitude of {:.0} deg, above 90 deg (hint: the unit of roll in \
+             [columns])",
+            amplitude_rad.to_degrees()
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses a moment that does not belong to the motion.
+pub(super) fn response(
+    response: &SteadyResponse,
+    restoring_n_m_per_rad: f64,
+) -> Result<(), String> {
+    let inertia = response.inertia_kg_m2.mean;
+    let natural_rad_s = (restoring_n_m_per_rad / inertia).sqrt();
+    let share = response.roll.frequency_rad_s.mean / natural_rad_s;
+    if !FREQUENCY_SHARE.contains(&share) {
+        return Err(format!(
+            "an inertia of {inertia:.3} kg m2 puts the excitation at {share:.2} times the natural \
+             frequency, outside {} to {} ({WRONG_UNIT})",
+            FREQUENCY_SHARE.start(),
+            FREQUENCY_SHARE.end()
+        ));
+    }
+    let ratio = |damping_n_m_s: f64| damping_n_m_s / (2.0 * inertia * natural_rad_s);
+    let work = &response.work_damping_n_m_s;
+    // The band counts: noise may well hide the work of a rod that was weak.
+    if ratio(work.hi95) < *DAMPING_RATIO.start() || ratio(work.lo95) > *DAMPING_RATIO.end() {
+        return Err(format!(
+            "the work of the rod makes a damping ratio of {:.2e}, outside {} to {} ({WRONG_UNIT})",
+            ratio(work.mean),
+            DAMPING_RATIO.start(),
+            DAMPING_RATIO.end()
+        ));
+    }
+    Ok(())
+}
+
+const WRONG_UNIT: &str = "hint: the units of force and roll in [columns], moment_arm_m, gm_m";
