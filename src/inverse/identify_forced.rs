@@ -9,13 +9,8 @@ use super::identification::{
     DampingFit, EquivalentDamping, ForcedResponse, Identification, MomentHistory,
 };
 use super::moment_history::{Reference, state_posterior};
-<<<<<<< HEAD
 use super::observed::Observed;
-=======
-use super::paper::{Convolution, least_squares};
-use super::paper_method;
 use super::plausible;
->>>>>>> review
 use super::record::Record;
 use crate::roll::damping::cubic_weight;
 use crate::run::{Run, RunKind, Series};
@@ -60,15 +55,8 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
     let mut remarks = vec![
         format!("the evidence favours a moment prior of order {}", ordered.order),
         format!(
-<<<<<<< HEAD
             "steady from {from_s:.2} to {to_s:.2} s of the recording, where nothing but the \
              excitation repeats"
-=======
-            "steady from {:.2} to {:.2} s of the recording, where nothing but the excitation \
-             repeats",
-            run.roll.time_s[response.steady.start],
-            run.roll.time_s[response.steady.end - 1]
->>>>>>> review
         ),
         format!("restoring K = {restoring:.3} N m/rad from displacement and GM, taken as exact"),
     ];
