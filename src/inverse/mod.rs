@@ -1,29 +1,16 @@
 //! The inverse problem: from a run's record to its damping, with credible bands.
 
-pub mod decay_fit;
+pub mod decay;
 pub mod estimate;
-pub mod filter;
 pub mod forced;
 pub mod froude_law;
-pub mod half_cycles;
-pub mod harmonic;
 pub mod identification;
-pub mod law_misfit;
-pub mod matrix;
 pub mod mixture;
-pub mod moment_history;
-pub mod moment_posterior;
 pub mod paper;
 pub mod record;
-pub mod smoother;
-pub mod steady;
-pub mod transition;
+pub mod state_space;
 
-mod decay_law;
-mod decay_start;
-mod drive;
-mod identify_decay;
-mod identify_forced;
+mod amplitudes;
 mod observed;
 mod paper_method;
 mod plausible;
@@ -55,7 +42,7 @@ pub struct Setting {
 pub fn identify(run: &Run, setting: &Setting) -> Result<Identification, String> {
     plausible::roll(run)?;
     match run.kind {
-        RunKind::Decay => identify_decay::identify(run, setting),
-        RunKind::Forced => identify_forced::identify(run, setting),
+        RunKind::Decay => decay::identify(run, setting),
+        RunKind::Forced => forced::identify(run, setting),
     }
 }

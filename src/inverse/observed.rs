@@ -1,7 +1,7 @@
 //! The observable (2.4) of a run, and the moment history by the method asked for.
 
 use super::Setting;
-use super::drive::Drive;
+use super::forced::drive::Drive;
 use super::identification::{Chain, DampingFit, Method, MomentHistory};
 use super::paper::{Convolution, least_squares};
 use super::paper_method;

@@ -1,11 +1,11 @@
 //! The paper's own route from the observable to the damping law: chains, scatter, plain fit.
 
 use super::estimate::Estimate;
-use super::filter::Triangle;
 use super::identification::{Chain, DampingFit, MomentHistory};
 use super::paper::{ChainSettings, Convolution, Hyperpriors, sample};
 use super::record::Record;
-use super::smoother::explained_by;
+use super::state_space::filter::Triangle;
+use super::state_space::smoother::explained_by;
 
 /// Samples of a record that the chains see: as many as the paper's runs have, more where a period
 /// would have fewer than twenty, for its impulses (2.6) need them close.

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
-use super::forced::SteadyResponse;
+use super::forced::response::SteadyResponse;
 use crate::run::Run;
 
 /// Damping ratios of a rolling model [-]: a round bare hull has about 0.005, large keels at speed

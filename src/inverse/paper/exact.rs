@@ -1,8 +1,8 @@
 //! The posterior (2.13) without a chain, for comparison with the sampler.
 
 use super::{Convolution, Hyperpriors, PriorPower};
-use crate::inverse::moment_posterior::{Hyperprior, MomentProblem, StatePosterior};
-use crate::inverse::transition::PaperWalk;
+use crate::inverse::state_space::posterior::{Hyperprior, MomentProblem, StatePosterior};
+use crate::inverse::state_space::transition::PaperWalk;
 
 /// Exact mean and standard deviation of the paper's moment history.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,8 +1,8 @@
 //! Energy lost from peak to peak, without any law of damping.
 
-use super::estimate::Estimate;
-use super::identification::HalfCycle;
-use super::moment_posterior::StatePosterior;
+use crate::inverse::estimate::Estimate;
+use crate::inverse::identification::HalfCycle;
+use crate::inverse::state_space::posterior::StatePosterior;
 
 /// A peak of the smoothed roll about its zero.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,11 +8,11 @@
 
 use statrs::function::gamma::ln_gamma;
 
-use super::filter::{Column, Filtered, filter};
-use super::mixture::Component;
-use super::record::Record;
-use super::smoother::explained_by;
-use super::transition::IntegratedWiener;
+use crate::inverse::mixture::Component;
+use crate::inverse::record::Record;
+use crate::inverse::state_space::filter::{Column, Filtered, filter};
+use crate::inverse::state_space::smoother::explained_by;
+use crate::inverse::state_space::transition::IntegratedWiener;
 use crate::roll::equation::{Decay, N_PARAMETERS, Sensitive};
 
 /// Unknowns of a fit: those of [`Decay`], then the zero offset of the roll channel.

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::estimate::Estimate;
-use super::filter::Triangle;
 use super::harmonic::{FourierSeries, Motion};
-use super::smoother::explained_by;
 use super::steady;
+use crate::inverse::estimate::Estimate;
+use crate::inverse::state_space::filter::Triangle;
+use crate::inverse::state_space::smoother::explained_by;
 use crate::roll::exciting_moment::Exciter;
 use crate::run::Run;
 

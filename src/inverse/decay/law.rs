@@ -1,21 +1,13 @@
 //! The damping law of a decay with what it leaves unexplained.
 
-use super::decay_fit::{B1, B3, DecayPosterior, N_UNKNOWNS};
-use super::estimate::Estimate;
+use super::fit::{B1, B3, DecayPosterior, N_UNKNOWNS};
 use super::half_cycles;
-use super::identification::{DampingFit, EquivalentDamping, HalfCycle};
-use super::law_misfit;
-use super::mixture;
+use super::misfit;
+use crate::inverse::amplitudes::{AMPLITUDES_DEG, is_compared};
+use crate::inverse::estimate::Estimate;
+use crate::inverse::identification::{DampingFit, EquivalentDamping, HalfCycle};
+use crate::inverse::mixture;
 use crate::roll::damping::cubic_weight;
-
-/// Amplitudes [deg] at which equivalent damping is reported, where the run comes near them.
-pub(super) const AMPLITUDES_DEG: [f64; 11] =
-    [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0];
-
-/// Whether this amplitude [deg] is reported for every run, so that all runs can be compared.
-pub(super) fn is_compared(amplitude_deg: f64) -> bool {
-    (amplitude_deg - 5.0).abs() < 1e-9
-}
 
 /// The fitted law with what its misfit adds to its covariance.
 pub(super) struct Law<'a> {
@@ -29,7 +21,7 @@ impl<'a> Law<'a> {
             fit.solutions.iter().map(|s| s.weight * s.probability_of_misfit).sum();
         let mean = |position| mixture::estimate(&fit.unknown(position)).mean;
         let misfit = if probability > 0.5 {
-            law_misfit::covariance(cycles, mean(B1), mean(B3))
+            misfit::covariance(cycles, mean(B1), mean(B3))
         } else {
             [[0.0; 2]; 2]
         };

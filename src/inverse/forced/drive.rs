@@ -1,15 +1,15 @@
 //! The measured moment of a forced run, and the roll that it makes.
 
-use super::estimate::Estimate;
-use super::forced::SteadyResponse;
-use super::identification::{DampingFit, MomentHistory, Resimulation};
-use super::moment_history::Reference;
-use super::moment_posterior::StatePosterior;
-use super::record::Record;
+use super::response::SteadyResponse;
+use crate::inverse::estimate::Estimate;
+use crate::inverse::identification::{DampingFit, MomentHistory, Resimulation};
+use crate::inverse::record::Record;
+use crate::inverse::state_space::history::Reference;
+use crate::inverse::state_space::posterior::StatePosterior;
 use crate::run::Run;
 
 /// The measured moment per unit inertia, ready to drive an oscillator.
-pub(super) struct Drive {
+pub(in crate::inverse) struct Drive {
     /// Instant of time zero [s].
     origin_s: f64,
     time_s: Vec<f64>,
@@ -17,7 +17,7 @@ pub(super) struct Drive {
 }
 
 impl Drive {
-    pub(super) fn new(
+    pub(in crate::inverse) fn new(
         response: &SteadyResponse,
         record: &Record,
         run: &Run,
@@ -36,7 +36,7 @@ impl Drive {
     }
 
     /// Moment per unit inertia [rad/s2] at a time [s] from the origin.
-    pub(super) fn at(&self, time_s: f64) -> f64 {
+    pub(in crate::inverse) fn at(&self, time_s: f64) -> f64 {
         let after = self.time_s.partition_point(|t| *t < time_s).clamp(1, self.time_s.len() - 1);
         let (before_s, after_s) = (self.time_s[after - 1], self.time_s[after]);
         let share = ((time_s - before_s) / (after_s - before_s)).clamp(0.0, 1.0);
@@ -45,13 +45,17 @@ impl Drive {
     }
 
     /// Instant of time zero [s] on the recording's time base.
-    pub(super) fn origin_s(&self) -> f64 {
+    pub(in crate::inverse) fn origin_s(&self) -> f64 {
         self.origin_s
     }
 
     /// Roll and scaled rate of the undamped oscillator from rest under the moment, which is
     /// straight between its samples.
-    pub(super) fn response(&self, times_s: &[f64], natural_rad_s: f64) -> Vec<[f64; 2]> {
+    pub(in crate::inverse) fn response(
+        &self,
+        times_s: &[f64],
+        natural_rad_s: f64,
+    ) -> Vec<[f64; 2]> {
         let w = natural_rad_s;
         let (mut now_s, mut state) = (0.0, [0.0, 0.0]);
         let mut next = self.time_s.partition_point(|t| *t <= 0.0);
@@ -81,7 +85,11 @@ impl Drive {
     }
 
     /// Intensity of the moment's noise in scaled time, in units of the roll noise.
-    pub(super) fn noise_intensity(&self, response: &SteadyResponse, natural_rad_s: f64) -> f64 {
+    pub(in crate::inverse) fn noise_intensity(
+        &self,
+        response: &SteadyResponse,
+        natural_rad_s: f64,
+    ) -> f64 {
         let n = self.time_s.len();
         let step_s = (self.time_s[n - 1] - self.time_s[0]) / (n - 1) as f64;
         let noise = response.moment_noise_n_m / response.inertia_kg_m2.mean;
@@ -90,7 +98,7 @@ impl Drive {
 
     /// The moment history: the posterior of what the measured moment leaves, with the motion that
     /// the moment made put back.
-    pub(super) fn history(
+    pub(in crate::inverse) fn history(
         &self,
         record: &Record,
         states: &StatePosterior,
@@ -124,7 +132,7 @@ impl Drive {
     }
 
     /// The run simulated under its measured moment with the fitted law (Fig. 17c).
-    pub(super) fn resimulation(
+    pub(in crate::inverse) fn resimulation(
         &self,
         record: &Record,
         damping: &DampingFit,

@@ -1,6 +1,6 @@
 //! How far a damping law stands from the energy that each half cycle lost.
 
-use super::identification::HalfCycle;
+use crate::inverse::identification::HalfCycle;
 use crate::roll::damping::{cubic_weight, equivalent_per_s};
 
 /// Covariance of `(b1, b3)` that the law's own misfit adds: the shift that the half cycles ask for,
@@ -8,7 +8,7 @@ use crate::roll::damping::{cubic_weight, equivalent_per_s};
 ///
 /// The half cycles are fitted with the weights of their kinetic energy; neighbours that err alike
 /// count as one, by Bartlett's weights over an eighth of the record (Newey and West 1987).
-pub fn covariance(half_cycles: &[HalfCycle], b1_per_s: f64, b3_s: f64) -> [[f64; 2]; 2] {
+pub(super) fn covariance(half_cycles: &[HalfCycle], b1_per_s: f64, b3_s: f64) -> [[f64; 2]; 2] {
     let rows: Vec<([f64; 2], f64, f64)> = half_cycles
         .iter()
         .map(|h| {

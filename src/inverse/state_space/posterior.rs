@@ -6,9 +6,9 @@
 use statrs::function::gamma::ln_gamma;
 
 use super::filter::{Column, Filtered, filter};
-use super::paper::{Hyperpriors, PriorPower};
 use super::smoother::smooth;
 use super::transition::Transition;
+use crate::inverse::paper::{Hyperpriors, PriorPower};
 
 /// What is believed about smoothness and noise before the record is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,8 @@
 //! A periodic record as a Fourier series whose frequency is unknown too.
 
-use super::estimate::Estimate;
-use super::filter::Triangle;
-use super::smoother::explained_by;
+use crate::inverse::estimate::Estimate;
+use crate::inverse::state_space::filter::Triangle;
+use crate::inverse::state_space::smoother::explained_by;
 
 /// Harmonics that are kept: the fundamental, and what asymmetry and a cubic law add.
 const N_HARMONICS: usize = 3;

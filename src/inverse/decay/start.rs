@@ -1,6 +1,6 @@
 //! Where the fit of a decay starts from.
 
-use super::record::Record;
+use crate::inverse::record::Record;
 use crate::roll::damping::cubic_weight;
 use crate::roll::equation::Decay;
 use crate::run::Run;

@@ -1,23 +1,29 @@
 //! One decay, from its samples to everything that they say.
 
-use super::Setting;
-use super::decay_fit::{self, DecayPosterior, K3, N_UNKNOWNS, OFFSET};
-use super::decay_law::{Law, equivalent_damping};
-use super::decay_start::first_guess;
-use super::estimate::Estimate;
-use super::half_cycles::{self, Restoring};
-use super::identification::{DampingFit, Identification, MomentHistory, Resimulation};
-use super::mixture;
-use super::moment_history::{Reference, state_posterior};
-use super::observed::Observed;
-use super::record::Record;
+pub mod fit;
+pub mod half_cycles;
+mod law;
+mod misfit;
+mod start;
+
+use self::fit::{DecayPosterior, K3, N_UNKNOWNS, OFFSET};
+use self::half_cycles::Restoring;
+use self::law::{Law, equivalent_damping};
+use self::start::first_guess;
+use crate::inverse::Setting;
+use crate::inverse::estimate::Estimate;
+use crate::inverse::identification::{DampingFit, Identification, MomentHistory, Resimulation};
+use crate::inverse::mixture;
+use crate::inverse::observed::Observed;
+use crate::inverse::record::Record;
+use crate::inverse::state_space::history::{Reference, state_posterior};
 use crate::run::{Run, RunKind};
 
 /// Identifies a decay.
 pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, String> {
     let record = Record::new(&run.roll)?;
     let (start, offset_rad) = first_guess(&record, run);
-    let fit = decay_fit::fit(&record, start, offset_rad)?;
+    let fit = fit::fit(&record, start, offset_rad)?;
     let unknown = |position| mixture::estimate(&fit.unknown(position));
     let frequency = unknown(2);
     let zero = unknown(OFFSET);

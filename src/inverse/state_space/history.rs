@@ -1,9 +1,9 @@
 //! From a roll record to the posterior of its moment history, smoothness order by evidence.
 
-use super::identification::MomentHistory;
-use super::moment_posterior::{Hyperprior, MomentProblem, StatePosterior};
-use super::record::Record;
+use super::posterior::{Hyperprior, MomentProblem, StatePosterior};
 use super::transition::IntegratedWiener;
+use crate::inverse::identification::MomentHistory;
+use crate::inverse::record::Record;
 
 /// A posterior of the state with the order of its prior.
 #[derive(Debug, Clone, PartialEq)]

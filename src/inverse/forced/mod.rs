@@ -1,17 +1,22 @@
 //! One forced run, from its samples to everything that they say.
 
-use super::Setting;
-use super::decay_law::{AMPLITUDES_DEG, is_compared};
-use super::drive::Drive;
-use super::estimate::Estimate;
-use super::forced::SteadyResponse;
-use super::identification::{
+pub(super) mod drive;
+pub mod harmonic;
+pub mod response;
+pub mod steady;
+
+use self::drive::Drive;
+use self::response::SteadyResponse;
+use crate::inverse::Setting;
+use crate::inverse::amplitudes::{AMPLITUDES_DEG, is_compared};
+use crate::inverse::estimate::Estimate;
+use crate::inverse::identification::{
     DampingFit, EquivalentDamping, ForcedResponse, Identification, MomentHistory,
 };
-use super::moment_history::{Reference, state_posterior};
-use super::observed::Observed;
-use super::plausible;
-use super::record::Record;
+use crate::inverse::observed::Observed;
+use crate::inverse::plausible;
+use crate::inverse::record::Record;
+use crate::inverse::state_space::history::{Reference, state_posterior};
 use crate::roll::damping::cubic_weight;
 use crate::run::{Run, RunKind, Series};
 

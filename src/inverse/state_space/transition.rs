@@ -89,7 +89,7 @@ impl Transition<3> for PaperWalk {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::inverse::matrix::product;
+    use crate::inverse::state_space::matrix::product;
 
     #[test]
     fn two_half_steps_make_one_step() {
