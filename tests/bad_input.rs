@@ -217,6 +217,18 @@ fn a_clock_reading_for_a_time_is_told_with_the_way_around_it() {
 }
 
 #[test]
+fn a_recording_without_the_force_of_the_others_is_told_how_to_be_listed() {
+    let campaign = CampaignFolder::new();
+    let force = "force = { column = \"f\", unit = \"N\" }\n[exciter]\nmoment_arm_m = 0.43\n";
+    let forced = CAMPAIGN.replace("[[recording]]", &format!("{force}[[recording]]"));
+    campaign.write("campaign.toml", &forced);
+    let listed = "files = { roll = \"pass_01.csv\" }";
+    tells(&refused(&campaign, 1), &["no column \"f\" for force", listed]);
+    campaign.write("campaign.toml", forced.replace("file = \"pass_01.csv\"", listed));
+    assert_eq!(rolltank(campaign.path(), &["identify", "."]).exit, 0);
+}
+
+#[test]
 fn an_umlaut_of_another_encoding_is_told_with_its_line() {
     let campaign = CampaignFolder::new();
     let latin1 = CAMPAIGN.replace("bare hull", "Sch\u{0}rze").into_bytes();

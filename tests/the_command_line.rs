@@ -208,6 +208,16 @@ fn a_simulated_campaign_is_never_written_over_another() {
 }
 
 #[test]
+fn a_scenario_that_is_not_there_is_told_with_those_that_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = rolltank(folder.path(), &["simulate", "papr", "-o", "day"]);
+    assert_eq!(told.exit, 2, "{}", told.err);
+    assert!(told.err.contains("scenario \"papr\" cannot be read"), "{}", told.err);
+    assert!(told.err.contains("built-in scenario paper"), "{}", told.err);
+    assert!(!folder.path().join("day").exists());
+}
+
+#[test]
 fn a_reader_that_has_seen_enough_is_no_error() {
     let campaign = CampaignFolder::new();
     // More output than a pipe holds, so that the writer meets the closed end.

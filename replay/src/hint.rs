@@ -1,6 +1,9 @@
 //! What to do about each [`ReplayError`], as one sentence for the `hint:` line.
 
 use std::io;
+use std::path::Path;
+
+use devices::Quantity;
 
 use crate::error::ReplayError;
 use crate::nearest::nearest;
@@ -26,7 +29,9 @@ impl ReplayError {
             Self::NoChannels { .. } => {
                 Some("add roll to [columns] of the campaign file".to_owned())
             }
-            Self::MissingColumn { column, present, .. } => Some(near_column(column, present)),
+            Self::MissingColumn { path, channel, column, present } => {
+                Some(near_column(path, channel, column, present))
+            }
             Self::RepeatedColumn { .. } => Some("give the columns different names".to_owned()),
             Self::NoTimeBase { .. } => {
                 Some("give time or sample_rate_hz in [columns] of the campaign file".to_owned())
@@ -78,11 +83,19 @@ impl ReplayError {
 }
 
 /// Names the column that was probably meant.
-fn near_column(column: &str, present: &[String]) -> String {
-    match nearest(column, present) {
-        Some(name) => format!("did you mean \"{name}\"?"),
-        None => "spell the column in [columns] exactly as in the file's header".to_owned(),
+fn near_column(path: &Path, channel: &str, column: &str, present: &[String]) -> String {
+    if let Some(name) = nearest(column, present) {
+        return format!("did you mean \"{name}\"?");
     }
+    let spelling = "spell the column in [columns] exactly as in the file's header";
+    if channel == "time" || channel == Quantity::Roll.name() {
+        return spelling.to_owned();
+    }
+    let file = path.file_name().unwrap_or(path.as_os_str()).display();
+    format!(
+        "{spelling}; a recording without {channel} lists the channels that it has, as in \
+         `files = {{ roll = \"{file}\" }}` of its [[recording]]"
+    )
 }
 
 fn cell_hint(fault: CellFault, text: &str) -> &'static str {

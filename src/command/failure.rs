@@ -63,6 +63,14 @@ pub enum Failure {
         /// What the system said.
         source: io::Error,
     },
+    /// A scenario that is neither a file that can be read nor built in.
+    #[error("scenario \"{}\" cannot be read", path.display())]
+    ScenarioFile {
+        /// The file, as it was named.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
     /// A folder that was to be written anew holds something.
     #[error("\"{}\" exists already and is not an empty folder", path.display())]
     NotFresh {
@@ -104,6 +112,7 @@ impl Failure {
         match self {
             Self::Campaign { .. }
             | Self::Scenario { .. }
+            | Self::ScenarioFile { .. }
             | Self::NotFresh { .. }
             | Self::InsideCampaign { .. } => Exit::Usage,
             _ => Exit::Failed,
@@ -138,6 +147,11 @@ impl Failure {
             Self::File { .. } => {
                 Some("check that the folder can be written and that the disk has room".to_owned())
             }
+            Self::ScenarioFile { .. } => Some(
+                "name a scenario file in UTF-8, as docs/scenario.md describes it, or the built-in \
+                 scenario paper"
+                    .to_owned(),
+            ),
             Self::InsideCampaign { results, .. } => {
                 Some(format!("name a folder outside, or one below \"{}\"", results.display()))
             }

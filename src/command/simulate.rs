@@ -46,6 +46,7 @@ fn named(name: &str) -> Result<Scenario, Failure> {
     {
         return Ok(scenario);
     }
-    let text = std::fs::read_to_string(&path).map_err(|source| Failure::File { path, source })?;
+    let text =
+        std::fs::read_to_string(&path).map_err(|source| Failure::ScenarioFile { path, source })?;
     Ok(Scenario::parse(&text, name)?)
 }
