@@ -76,6 +76,14 @@ pub(super) fn estimate_cell(estimate: Option<&Estimate>) -> Markup {
     }
 }
 
+/// The same with at most four significant digits of the mean, for a table read at a glance.
+pub(super) fn short_estimate_cell(estimate: Option<&Estimate>) -> Markup {
+    let Some(estimate) = estimate else { return estimate_cell(None) };
+    let text = typeset(&number::estimate_within(estimate, 4));
+    let (mean, interval) = text.split_once(' ').unwrap_or((&text, ""));
+    html! { td.number.stacked { (mean) " " span.interval { (interval) } } }
+}
+
 /// A cell with a number that is already rounded.
 pub(super) fn number_cell(text: &str) -> Markup {
     html! { td.number { (typeset(text)) } }

@@ -5,17 +5,21 @@ use maud::{Markup, html};
 /// Where a sentence belongs, with the sentence.
 pub(super) type Line = (String, String);
 
+/// Sentences alike that are all shown.
+const N_IN_FULL: usize = 3;
+
 /// The lines as list items, one per kind of sentence in order of its first line.
 ///
-/// Of many alike the first is shown; the others are folded beneath it.
+/// Of many alike the first is shown, the others folded beneath it; a few stand in full.
 pub(super) fn list(lines: &[Line]) -> Markup {
     html! {
         ul {
             @for group in grouped(lines) {
-                li {
-                    @if let Some(((source, text), others)) = group.split_first() {
+                @let n_shown = if group.len() > N_IN_FULL { 1 } else { group.len() };
+                @for (index, (source, text)) in group.iter().take(n_shown).enumerate() {
+                    li {
                         b { (source) } ": " (text)
-                        @if !others.is_empty() { (folded(text, others)) }
+                        @if index == 0 && n_shown < group.len() { (folded(text, &group[1..])) }
                     }
                 }
             }
@@ -27,7 +31,9 @@ fn folded(first: &str, others: &[&Line]) -> Markup {
     let same = others.iter().all(|(_, text)| text == first);
     html! {
         details {
-            summary { (if same { "the same" } else { "alike" }) " of " (others.len()) " more" }
+            summary {
+                (others.len()) " more " (if same { "that read the same" } else { "alike" })
+            }
             ul {
                 @if same {
                     li { @for (index, (source, _)) in others.iter().enumerate() {
@@ -64,9 +70,11 @@ mod tests {
     #[test]
     fn sentences_that_differ_only_in_numbers_are_folded_below_the_first() {
         let line = |source: &str, text: &str| (source.to_owned(), text.to_owned());
-        let lines = [line("a", "lost 3.5 s"), line("b", "mended"), line("c", "lost 12 s")];
+        let mut lines = vec![line("a", "lost 3.5 s"), line("b", "mended"), line("c", "lost 12 s")];
         let sizes: Vec<_> = grouped(&lines).iter().map(Vec::len).collect();
         assert_eq!(sizes, [2, 1]);
-        assert!(list(&lines).into_string().contains("alike of 1 more"));
+        assert!(!list(&lines).into_string().contains("<details>"), "two stand in full");
+        lines.extend([line("d", "lost 1 s"), line("e", "lost 2 s")]);
+        assert!(list(&lines).into_string().contains("3 more alike"));
     }
 }

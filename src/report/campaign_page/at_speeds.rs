@@ -3,8 +3,10 @@
 use maud::{Markup, html};
 
 use super::{CampaignPage, inertia::FROUDE_APART};
-use crate::report::document::{estimate_cell, number_cell, run_link, section, table, typeset};
-use crate::report::number::{fixed, mean};
+use crate::report::document::{
+    number_cell, run_link, section, short_estimate_cell, table, typeset,
+};
+use crate::report::number::{fixed, mean_within};
 use crate::results::IdentifiedRun;
 use crate::run::RunKind;
 
@@ -13,16 +15,24 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
     if conditions.is_empty() {
         return None;
     }
-    let columns = [
+    let any_forced = page.results.runs.iter().any(|run| run.run.kind == RunKind::Forced);
+    let mut columns = vec![
         ("Fr", "–"),
         ("b_{eq}(5°)", "1/s"),
         ("B̂₄₄(5°)", "–"),
         ("ζ(5°)", "–"),
         ("b₁", "1/s"),
         ("b₃", "s"),
-        ("b_{eq}(A₁) forced", "1/s"),
-        ("Decay", ""),
     ];
+    let mut caption = "Free decays, with 95 % intervals below: damping at 5 deg as equivalent \
+                       b_{eq}, as B̂₄₄, as ratio to critical ζ; coefficients of b₁ φ′ + b₃ φ′³."
+        .to_owned();
+    if any_forced {
+        columns.push(("b_{eq}(A₁) forced", "1/s"));
+        caption += " Beside them the forced runs at that speed, each at its own amplitude A₁: \
+                    lowest to highest over their frequencies.";
+    }
+    columns.push(("Decay", ""));
     let rows: Vec<_> = conditions
         .into_iter()
         .flat_map(|condition| {
@@ -32,10 +42,6 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
             std::iter::once(heading).chain(speeds.into_iter().flat_map(|runs| rows(page, &runs)))
         })
         .collect();
-    let caption = "Damping of each free decay, with its 95 % interval below: equivalent at 5 deg, \
-                   as B̂₄₄, as ratio to critical ζ, as coefficients of b₁ φ′ + b₃ φ′³. Beside them \
-                   the forced runs at that speed, each at its own amplitude A₁: lowest to highest \
-                   over their frequencies.";
     let extrapolated = page.results.runs.iter().any(|run| {
         run.run.kind == RunKind::Decay
             && page.field_units(run).at_comparison().is_some_and(|at| at.extrapolated)
@@ -44,7 +50,7 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
         "damping-at-speeds-section",
         "Damping at each Froude number",
         &html! {
-            (table("damping-at-speeds", caption, &columns, &rows))
+            (table("damping-at-speeds", &caption, &columns, &rows))
             @if extrapolated {
                 p.note { "† The decay did not reach 5 deg: the law is extrapolated." }
             }
@@ -60,13 +66,14 @@ fn by_speed(mut runs: Vec<&IdentifiedRun>) -> Vec<Vec<&IdentifiedRun>> {
 
 /// One row per decay; forced runs stand in the first, or alone where there is no decay.
 fn rows(page: &CampaignPage, runs: &[&IdentifiedRun]) -> Vec<Markup> {
-    let forced = forced_cell(page, runs);
+    let any_forced = page.results.runs.iter().any(|run| run.run.kind == RunKind::Forced);
+    let forced = if any_forced { forced_cell(page, runs) } else { Markup::default() };
     let decays: Vec<_> = runs.iter().filter(|run| run.run.kind == RunKind::Decay).collect();
     if decays.is_empty() {
         let froude = runs.iter().map(|run| run.froude).sum::<f64>() / runs.len() as f64;
         return vec![html! {
             (number_cell(&fixed(froude, 3)))
-            @for _ in 0..5 { (estimate_cell(None)) }
+            @for _ in 0..5 { (short_estimate_cell(None)) }
             (forced)
             td {}
         }];
@@ -80,13 +87,13 @@ fn rows(page: &CampaignPage, runs: &[&IdentifiedRun]) -> Vec<Markup> {
                 (typeset(&fixed(run.froude, 3)))
                 @if at.is_some_and(|at| at.extrapolated) { " †" }
             }
-            (estimate_cell(damping.as_ref()))
-            (estimate_cell(damping.map(|b| units.b44_hat(b)).as_ref()))
-            (estimate_cell(damping.map(|b| units.damping_ratio(b)).as_ref()))
-            (estimate_cell(Some(&run.identification.damping.b1_per_s)))
-            (estimate_cell(Some(&run.identification.damping.b3_s)))
-            @if index == 0 { (forced) } @else { td {} }
-            td { a href=(run_link(&run.id)) { (run.id) } }
+            (short_estimate_cell(damping.as_ref()))
+            (short_estimate_cell(damping.map(|b| units.b44_hat(b)).as_ref()))
+            (short_estimate_cell(damping.map(|b| units.damping_ratio(b)).as_ref()))
+            (short_estimate_cell(Some(&run.identification.damping.b1_per_s)))
+            (short_estimate_cell(Some(&run.identification.damping.b3_s)))
+            @if index == 0 { (forced) } @else if any_forced { td {} }
+            td.name { a href=(run_link(&run.id)) { (run.id) } }
         }
     };
     decays.iter().enumerate().map(row).collect()
@@ -101,11 +108,11 @@ fn forced_cell(page: &CampaignPage, runs: &[&IdentifiedRun]) -> Markup {
     forced.sort_by(|a, b| a.mean.total_cmp(&b.mean));
     html! {
         @match forced.as_slice() {
-            [] => { (estimate_cell(None)) }
-            [only] => { (estimate_cell(Some(only))) }
+            [] => { (short_estimate_cell(None)) }
+            [only] => { (short_estimate_cell(Some(only))) }
             [lowest, .., highest] => {
                 td.number.stacked {
-                    (mean(lowest)) " to " (mean(highest))
+                    (mean_within(lowest, 3)) " to " (mean_within(highest, 3))
                     span.interval { (forced.len()) " runs" }
                 }
             }

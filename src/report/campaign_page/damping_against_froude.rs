@@ -44,9 +44,9 @@ pub(super) fn figure(page: &CampaignPage) -> Option<Figure> {
             forced_left_out |= !decays.is_empty() && !forced.is_empty();
             panel = if decays.is_empty() {
                 let ink = ink().shaped(Shape::OpenCircle);
-                panel.error_bars(&forced, ink.named(format!("{condition}: forced runs")))
+                panel.error_bars(&forced, ink.named(format!("{condition}, forced")))
             } else {
-                panel.error_bars(&decays, ink().named(format!("{condition}: free decays")))
+                panel.error_bars(&decays, ink().named(*condition))
             };
         }
         figure = figure.panel(panel);
@@ -64,7 +64,7 @@ fn bars(page: &CampaignPage, condition: &str, kind: RunKind) -> Vec<(f64, f64, f
 
 fn with_law(panel: Panel, law: &FroudeLaw, ink: impl Fn() -> Ink) -> Panel {
     let ends = |end: fn(&Estimate) -> f64| -> Vec<f64> { law.b1_per_s.iter().map(end).collect() };
-    let name = format!("{}: law", law.condition);
+    let name = format!("{}, law", law.condition);
     panel.band(&law.froude, &ends(|at| at.lo95), &ends(|at| at.hi95), ink()).line(
         &law.froude,
         &ends(|at| at.mean),
@@ -73,9 +73,10 @@ fn with_law(panel: Panel, law: &FroudeLaw, ink: impl Fn() -> Ink) -> Panel {
 }
 
 fn caption(page: &CampaignPage, forced_left_out: bool) -> String {
-    let mut caption = "Bars are the 95 % intervals of single runs, often shorter than the mark is \
-                       high."
-        .to_owned();
+    let mut caption =
+        "Points: single free decays; bars: their 95 % intervals, often shorter than the mark \
+                       is high."
+            .to_owned();
     if !page.results.froude_laws.is_empty() {
         caption += " Lines: the law b₁(Fr) = b₀ (1 + κ Fr²); shaded: its 95 % band, \
                     as wide as the scatter of the runs about the law leaves it.";

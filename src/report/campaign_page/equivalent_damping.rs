@@ -9,7 +9,7 @@ use crate::run::RunKind;
 
 pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
     let mut panel = Panel::new(Axis::new("b_{eq} [1/s]").holding(0.0)).height(280);
-    let mut any = false;
+    let (mut any, mut any_forced) = (false, false);
     for (index, condition) in page.conditions().into_iter().enumerate() {
         let mut decays = Vec::new();
         let mut forced = Vec::new();
@@ -23,15 +23,14 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
         }
         let ink = || Ink::of_series(index);
         if !forced.is_empty() {
-            any = true;
-            let name = format!("{condition}: forced, at A₁");
+            (any, any_forced) = (true, true);
+            let name = format!("{condition}, forced");
             let ink = ink().shaped(Shape::OpenCircle);
             panel = panel.error_bars(&forced, ink.named(name));
         }
         if !decays.is_empty() {
             any = true;
-            let name = format!("{condition}: decays, at 5 deg");
-            panel = panel.error_bars(&decays, ink().named(name));
+            panel = panel.error_bars(&decays, ink().named(condition));
         }
     }
     any.then(|| {
@@ -40,13 +39,20 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
             "Equivalent damping against Froude number",
             Axis::new("Froude number Fr [–]"),
         )
-        .caption(
-            "The value to compare between runs, since b₁ and b₃ trade against each other. Decays: \
-             at 5 deg, from the law. Forced runs: at their own amplitude A₁, from the work per \
-             cycle without a law; of runs at one speed the faster one has the larger b_{eq} where \
-             b₃ is positive.",
-        )
+        .caption(caption(any_forced))
         .panel(panel);
         section("equivalent-damping-section", "Equivalent damping", &figure.markup())
     })
+}
+
+fn caption(any_forced: bool) -> String {
+    let mut caption = "The value to compare between runs, since b₁ and b₃ trade against each \
+                       other: free decays at 5 deg, from the law."
+        .to_owned();
+    if any_forced {
+        caption += " Forced runs (open circles) at their own amplitude A₁, from the work per \
+                    cycle, without a law; those at one speed differ in frequency, and with \
+                    b₃ > 0 the damping grows with it.";
+    }
+    caption
 }

@@ -10,6 +10,9 @@ use crate::report::number::fixed;
 /// Froude numbers further apart than this [-] were meant to differ.
 pub(super) const FROUDE_APART: f64 = 0.012;
 
+/// Least width of the axis over the largest value: smaller differences are no trend.
+const WIDTH: f64 = 0.1;
+
 pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
     let figures: Vec<_> = page
         .conditions()
@@ -24,15 +27,21 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
                     (run.froude, (forced.frequency_rad_s.mean, i.mean, i.lo95, i.hi95))
                 })
                 .collect();
+            let largest = points.iter().map(|(_, point)| point.1).fold(0.0, f64::max);
+            let y = Axis::new("(I+ΔI)/(m B²) [–]").at_least(WIDTH * largest);
             let figure = groups::figure(
                 format!("inertia-{}", index + 1),
                 &format!("Inertia against frequency: {condition}"),
-                (Axis::new("frequency of excitation ω [rad/s]"), Axis::new("(I+ΔI)/(m B²) [–]")),
+                (Axis::new("frequency of excitation ω [rad/s]"), y),
                 &groups::by_value(points.clone(), FROUDE_APART),
                 |froude| format!("Fr {}", fixed(froude, 2)),
             );
-            (!points.is_empty())
-                .then(|| figure.caption("From (4.5), over mass times beam squared."))
+            (!points.is_empty()).then(|| {
+                figure.caption(
+                    "From (4.5), over mass times beam squared. The scale spans a tenth of the \
+                     value or more.",
+                )
+            })
         })
         .collect();
     (!figures.is_empty()).then(|| {

@@ -30,7 +30,7 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
                 details {
                     summary {
                         (changeovers.len()) " changeovers: the rod starts, stops or goes over to "
-                        "another excitation beside a run that was used"
+                        "another excitation beside a run that was used; rejected.csv lists them too"
                     }
                     (stretches("changeover-table", "Changeovers.", &changeovers))
                 }

@@ -129,7 +129,7 @@ fn border(canvas: &Canvas, place: Place) -> Drawn {
 
 /// The label of the vertical axis, one line each, with the second scale on the right.
 fn side_labels(canvas: &Canvas, plane: &Plane, panel: &Panel, place: Place) -> Drawn {
-    upright(canvas, &panel.y, 2, place)?;
+    upright(canvas, &panel.y, 4, place)?;
     let Some(second) = &panel.second else { return Ok(()) };
     let y = plane.get_y_range();
     for (value, label) in axis::ticks(y.start * second.factor, y.end * second.factor, 6) {

@@ -32,12 +32,12 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
         .points(
             &part_of(&moment.roll_rate_rad_per_s, |k| !vague(k)),
             &part_of(&damping, |k| !vague(k)),
-            Ink::new(Hue::Grey).shaped(Shape::Dot).named("posterior mean, sample by sample"),
+            Ink::new(Hue::Grey).shaped(Shape::Dot).named("posterior mean"),
         )
         .points(
             &part_of(&moment.roll_rate_rad_per_s, vague),
             &part_of(&damping, vague),
-            Ink::new(Hue::Orange).shaped(Shape::Dot).named("barely known, at the ends"),
+            Ink::new(Hue::Orange).shaped(Shape::Dot).named("the same, barely known"),
         )
         .band(
             &rate,
