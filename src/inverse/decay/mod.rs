@@ -90,8 +90,9 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
     })
 }
 
-/// The run simulated with linear restoring and its law, as in the paper's Fig. 13: the least-squares
-/// law, or that of the chain's scatter where there is one.
+/// The run simulated with linear restoring and its law, as in the paper's Fig. 13.
+///
+/// The law is that of least squares, or that of the chain's scatter where there is one.
 fn resimulation(
     record: &Record,
     fit: &DecayPosterior,
