@@ -160,7 +160,7 @@ fn not_utf8(folder: &Path, error: &FromUtf8Error) -> Mistake {
     let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
     Mistake {
         file: folder.join(FILE_NAME).display().to_string(),
-        line: Some(1 + before.iter().filter(|byte| **byte == b'\n').count()),
+        line: Some(before.split(|byte| *byte == b'\n').count()),
         message: "a letter is not encoded in UTF-8".to_owned(),
         hint: Some("save the file as UTF-8, which an umlaut or a degree sign needs".to_owned()),
     }
