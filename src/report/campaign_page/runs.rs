@@ -43,7 +43,7 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
         ("b_{eq}(5°)", "1/s"),
         ("rmse", "deg"),
     ];
-    let caption = "All runs, in the order in which they ended. One forced run hardly parts b₁ from b₃; \
-                   its b_{eq} at its own amplitude is in the table of forced runs.";
+    let caption = "All runs, in the order in which they ended. One forced run hardly parts b₁ \
+                   from b₃; its b_{eq} at its own amplitude is in the table of forced runs.";
     Some(section("runs", "Runs", &table("runs-table", caption, &columns, &rows)))
 }

@@ -25,7 +25,8 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
     let ratio = again.rmse_rad.to_degrees() / noise;
     let structure = if ratio > STRUCTURE {
         format!(
-            " The residual is {} times the noise: the fitted model leaves a part of the motion over.",
+            " The residual is {} times the noise: the fitted model leaves a part of the motion \
+             over.",
             significant(ratio, 2)
         )
     } else {
