@@ -65,11 +65,9 @@ fn bars(page: &CampaignPage, condition: &str, kind: RunKind) -> Vec<(f64, f64, f
 fn with_law(panel: Panel, law: &FroudeLaw, ink: impl Fn() -> Ink) -> Panel {
     let ends = |end: fn(&Estimate) -> f64| -> Vec<f64> { law.b1_per_s.iter().map(end).collect() };
     let name = format!("{}, law", law.condition);
-    panel.band(&law.froude, &ends(|at| at.lo95), &ends(|at| at.hi95), ink()).line(
-        &law.froude,
-        &ends(|at| at.mean),
-        ink().wide(1.8).named(name),
-    )
+    panel
+        .band(&law.froude, &ends(|at| at.lo95), &ends(|at| at.hi95), ink().named("95 % band"))
+        .line(&law.froude, &ends(|at| at.mean), ink().wide(1.8).named(name))
 }
 
 fn caption(page: &CampaignPage, forced_left_out: bool) -> String {
