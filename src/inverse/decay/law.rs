@@ -57,18 +57,19 @@ impl<'a> Law<'a> {
 }
 
 /// Equivalent damping at the reported amplitudes by a law, given for each weight of its cubic
-/// coefficient [1/s2], with the half cycles' own beside it.
+/// coefficient [1/s2], with the half cycles' own beside it; `largest_rad` [rad] is the roll that the
+/// run reached.
 pub(super) fn equivalent_damping(
     law: impl Fn(f64) -> Estimate,
     b3_s: f64,
     cycles: &[HalfCycle],
+    largest_rad: f64,
     frequency_rad_s: f64,
 ) -> Vec<EquivalentDamping> {
     let smallest = cycles.iter().map(|c| c.amplitude_rad).fold(f64::INFINITY, f64::min);
-    let largest = cycles.iter().map(|c| c.amplitude_rad).fold(0.0, f64::max);
     let near = |amplitude_deg: f64| {
         let amplitude_rad = amplitude_deg.to_radians();
-        (0.8 * smallest..=1.25 * largest).contains(&amplitude_rad) || is_compared(amplitude_deg)
+        (0.8 * smallest..=1.25 * largest_rad).contains(&amplitude_rad) || is_compared(amplitude_deg)
     };
     let at = |amplitude_deg: f64| {
         let amplitude_rad = amplitude_deg.to_radians();
@@ -76,7 +77,7 @@ pub(super) fn equivalent_damping(
             amplitude_deg,
             fitted_per_s: law(cubic_weight(frequency_rad_s, amplitude_rad)),
             local_per_s: half_cycles::local_damping(cycles, amplitude_rad, b3_s),
-            extrapolated: !(smallest..=largest).contains(&amplitude_rad),
+            extrapolated: !(smallest..=largest_rad).contains(&amplitude_rad),
         }
     };
     AMPLITUDES_DEG.into_iter().filter(|a| near(*a)).map(at).collect()

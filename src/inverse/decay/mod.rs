@@ -64,8 +64,10 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
         Some(fit) => fit.equivalent_per_s(cubic_weight),
         None => law.combination(1.0, cubic_weight),
     };
+    let largest_rad = told.moment.roll_rad.iter().map(|roll| roll.abs()).fold(0.0, f64::max);
+    let b3_s = damping.b3_s.mean;
     let equivalent_damping =
-        equivalent_damping(equivalent, damping.b3_s.mean, &cycles, frequency.mean);
+        equivalent_damping(equivalent, b3_s, &cycles, largest_rad, frequency.mean);
     Ok(Identification {
         kind: RunKind::Decay,
         method: setting.method,
