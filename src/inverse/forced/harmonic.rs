@@ -59,6 +59,21 @@ impl FourierSeries {
         Err(format!("the record does not repeat at a frequency near {near_rad_s:.3} rad/s"))
     }
 
+    /// Fits the series at a known frequency, such as that of another channel of the same run, so
+    /// that the two can be compared in phase.
+    pub fn fit_at(time_s: &[f64], value: &[f64], frequency_rad_s: Estimate) -> Self {
+        let (coefficients, triangle) = linear_fit(time_s, value, frequency_rad_s.mean);
+        let freedom = time_s.len() as f64 - N_COEFFICIENTS as f64;
+        let noise_sd = triangle.at(N_COEFFICIENTS, N_COEFFICIENTS).abs() / freedom.sqrt();
+        Self {
+            frequency_rad_s,
+            mean: coefficients[0],
+            pairs: pairs(&coefficients),
+            coefficient_sd: noise_sd * (2.0 / time_s.len() as f64).sqrt(),
+            noise_sd,
+        }
+    }
+
     /// Amplitude of the fundamental.
     pub fn amplitude(&self) -> f64 {
         self.pairs[0].0.hypot(self.pairs[0].1)
@@ -111,6 +126,10 @@ fn linear_fit(time_s: &[f64], value: &[f64], frequency: f64) -> (Vec<f64>, Trian
     (weights.iter().map(|w| -w).collect(), triangle)
 }
 
+fn pairs(coefficients: &[f64]) -> [(f64, f64); N_HARMONICS] {
+    std::array::from_fn(|h| (coefficients[1 + 2 * h], coefficients[2 + 2 * h]))
+}
+
 /// Step of the frequency, its standard deviation, and the series before the step.
 fn refine(
     time_s: &[f64],
@@ -121,7 +140,7 @@ fn refine(
     let mut series = FourierSeries {
         frequency_rad_s: Estimate::normal(frequency, 0.0),
         mean: coefficients[0],
-        pairs: std::array::from_fn(|h| (coefficients[1 + 2 * h], coefficients[2 + 2 * h])),
+        pairs: pairs(coefficients),
         coefficient_sd: 0.0,
         noise_sd: 0.0,
     };

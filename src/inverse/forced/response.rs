@@ -54,14 +54,22 @@ impl SteadyResponse {
         if roll_time_s.len() < 30 {
             return Err(format!("{} roll samples are too few, 30 are needed", roll_time_s.len()));
         }
-        let (steady, roll) = steady::stretch(&roll_time_s, &run.roll.value, near)?;
-        let steady_s = (roll_time_s[steady.start], roll_time_s[steady.end - 1]);
-        let during = run.drive.time_s.partition_point(|t| t - run.start_s < steady_s.0)
-            ..run.drive.time_s.partition_point(|t| t - run.start_s <= steady_s.1);
-        let moment_time_s = from_start(&run.drive.time_s[during.clone()]);
-        if moment_time_s.len() < 30 {
+        let drive_time_s = from_start(&run.drive.time_s);
+        if drive_time_s.len() < 30 {
             return Err("a forced run needs its measured force or moment".into());
         }
+        let (from_s, to_s) =
+            steady::both((&roll_time_s, &run.roll.value), (&drive_time_s, &run.drive.value), near)?;
+        let within = |times: &[f64]| {
+            times.partition_point(|t| *t < from_s)..times.partition_point(|t| *t <= to_s)
+        };
+        let (steady, during) = (within(&roll_time_s), within(&drive_time_s));
+        let roll = FourierSeries::fit(
+            &roll_time_s[steady.clone()],
+            &run.roll.value[steady.clone()],
+            near,
+        )?;
+        let moment_time_s = drive_time_s[during.clone()].to_vec();
         let zero = run.still.and_then(|s| s.force).unwrap_or(0.0);
         let moment_n_m: Vec<f64> = moment_time_s
             .iter()
@@ -71,8 +79,7 @@ impl SteadyResponse {
                 None => value - zero,
             })
             .collect();
-        let frequency = roll.frequency_rad_s.mean;
-        let moment = FourierSeries::fit(&moment_time_s, &moment_n_m, frequency)?;
+        let moment = FourierSeries::fit_at(&moment_time_s, &moment_n_m, roll.frequency_rad_s);
         let balance = Balance::new(&roll, &moment_time_s, &moment_n_m, restoring_n_m_per_rad);
         let response = balance.response(roll, moment);
         if response.work_damping_n_m_s.hi95 < 0.0 {

@@ -8,6 +8,40 @@ use super::harmonic::FourierSeries;
 /// is tested twice, so four keeps a false cut below one run in a hundred.
 const STRAY: f64 = 4.0;
 
+/// Fewest cycles from which a phase is read.
+const N_CYCLES_MIN: f64 = 3.0;
+
+/// First and last instant [s] at which both roll and force are steady, times and values each.
+///
+/// The force is the sharper witness: a ramp that is too gentle to be seen in the roll still takes a
+/// moment to accelerate the model. Half a cycle more is left out at both ends, because a cycle may
+/// hide the last of a transient in its outer half.
+///
+/// # Errors
+/// The reason, as a sentence, when one of them is not periodic or the two are not steady together.
+pub fn both(
+    roll: (&[f64], &[f64]),
+    force: (&[f64], &[f64]),
+    near_rad_s: f64,
+) -> Result<(f64, f64), String> {
+    let ends = |(time_s, value): (&[f64], &[f64])| -> Result<(f64, f64), String> {
+        let (range, _) = stretch(time_s, value, near_rad_s)?;
+        Ok((time_s[range.start], time_s[range.end - 1]))
+    };
+    let (roll_s, force_s) = (ends(roll)?, ends(force)?);
+    let period_s = std::f64::consts::TAU / near_rad_s;
+    let from_s = roll_s.0.max(force_s.0) + 0.5 * period_s;
+    let to_s = roll_s.1.min(force_s.1) - 0.5 * period_s;
+    let n_cycles = (to_s - from_s) / period_s;
+    if n_cycles < N_CYCLES_MIN {
+        return Err(format!(
+            "roll and force are steady together for {:.1} cycles, {N_CYCLES_MIN} are needed",
+            n_cycles.max(0.0)
+        ));
+    }
+    Ok((from_s, to_s))
+}
+
 /// The samples of the longest steady stretch about the middle of a record, and its series.
 ///
 /// The middle third is fitted first; cycles are then added at both ends as long as what they hold
