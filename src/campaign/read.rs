@@ -125,8 +125,9 @@ fn check_columns(root: &Section<'_>, columns: Option<&Columns>, recordings: &[Re
 fn check_exciter(root: &Section<'_>, columns: &Columns) {
     let force = columns.channels.iter().any(|channel| channel.quantity == Quantity::Force);
     if force && !root.holds("exciter") {
-        root.mistake(
+        root.mistake_below(
             "columns",
+            "force",
             "a force is recorded, but no [exciter] says how it becomes a moment".to_owned(),
             "add [exciter] with `moment_arm_m = ...`, or drop `force` from [columns] to use \
              the decays alone",
@@ -160,7 +161,7 @@ fn not_utf8(folder: &Path, error: &FromUtf8Error) -> Mistake {
     let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
     Mistake {
         file: folder.join(FILE_NAME).display().to_string(),
-        line: Some(1 + before.iter().filter(|byte| **byte == b'\n').count()),
+        line: Some(before.split(|byte| *byte == b'\n').count()),
         message: "a letter is not encoded in UTF-8".to_owned(),
         hint: Some("save the file as UTF-8, which an umlaut or a degree sign needs".to_owned()),
     }
