@@ -60,7 +60,7 @@ impl ReplayError {
     fn hint_on_topics(&self) -> Option<String> {
         match self {
             Self::NoTopic { quantity, .. } => Some(format!(
-                "give {} a topic and a field in [columns], the field as a path such as \"angle.roll\"",
+                "give {} a topic and a field in [columns], the field a path such as \"angle.roll\"",
                 quantity.name()
             )),
             Self::MissingTopic { topic, present, .. } => nearest(topic, present)
