@@ -229,6 +229,14 @@ fn a_recording_without_the_force_of_the_others_is_told_how_to_be_listed() {
 }
 
 #[test]
+fn a_force_without_the_arm_that_makes_a_moment_of_it_is_told_with_its_line() {
+    let force = "unit = \"deg\" }\nforce = { column = \"f\", unit = \"N\" }";
+    let campaign = CampaignFolder::with("unit = \"deg\" }", force);
+    let message = refused(&campaign, 2);
+    tells(&message, &["campaign.toml:13: a force is recorded", "hint: add [exciter]"]);
+}
+
+#[test]
 fn an_umlaut_of_another_encoding_is_told_with_its_line() {
     let campaign = CampaignFolder::new();
     let latin1 = CAMPAIGN.replace("bare hull", "Sch\u{0}rze").into_bytes();

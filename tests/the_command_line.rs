@@ -121,6 +121,18 @@ fn a_report_among_the_recordings_is_refused_because_its_tables_would_be_read_as_
     assert!(campaign.path().join("results/appendix/index.html").is_file());
 }
 
+#[cfg(unix)]
+#[test]
+fn a_link_to_a_recording_does_not_count_its_runs_twice() {
+    let campaign = CampaignFolder::new();
+    let unlisted = CAMPAIGN.split("[[recording]]").next().unwrap();
+    campaign.write("campaign.toml", unlisted);
+    std::os::unix::fs::symlink("pass_01.csv", campaign.path().join("yesterday.csv")).unwrap();
+    let told = rolltank(campaign.path(), &["identify", ".", "--json"]);
+    assert_eq!(told.exit, 0, "{}", told.err);
+    assert_eq!(told.out.matches("\"id\": ").count(), 1, "{}", told.out);
+}
+
 #[test]
 fn imported_recordings_give_the_runs_of_their_tables() {
     let campaign = CampaignFolder::new();

@@ -45,21 +45,23 @@ action = [
 /// The identification of forced rolling with one passage of the campaign file replaced, its exit
 /// code and what was said beside it.
 fn forced_with(from: &str, to: &str) -> (Value, i32, String) {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("forced.toml"), FORCED).unwrap();
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    std::fs::write(folder.path().join("forced.toml"), FORCED).expect("the disk has room");
     assert_eq!(rolltank(folder.path(), &["simulate", "forced.toml", "-o", "day"]).exit, 0);
     let path = folder.path().join("day/campaign.toml");
-    let text = std::fs::read_to_string(&path).unwrap();
+    let text = std::fs::read_to_string(&path).expect("it was written");
     assert!(text.contains(from), "`{from}` is not in:\n{text}");
-    std::fs::write(&path, text.replace(from, to)).unwrap();
+    std::fs::write(&path, text.replace(from, to)).expect("the disk has room");
     let told = rolltank(folder.path(), &["identify", "day", "--json"]);
-    (serde_json::from_str(&told.out).unwrap(), told.exit, told.err)
+    let json = serde_json::from_str(&told.out).expect("nothing but JSON is on standard output");
+    (json, told.exit, told.err)
 }
 
 /// How many stretches were rejected for a reason with these words.
 fn rejected_with(identification: &Value, words: &str) -> usize {
-    let rejected = identification["rejected"].as_array().unwrap().iter();
-    rejected.filter(|stretch| stretch["reason"].as_str().unwrap().contains(words)).count()
+    let rejected = identification["rejected"].as_array().expect("a list").iter();
+    let reasons = rejected.map(|stretch| stretch["reason"].as_str().expect("a sentence"));
+    reasons.filter(|reason| reason.contains(words)).count()
 }
 
 #[test]

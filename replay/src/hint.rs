@@ -60,7 +60,7 @@ impl ReplayError {
     fn hint_on_topics(&self) -> Option<String> {
         match self {
             Self::NoTopic { quantity, .. } => Some(format!(
-                "give {} a topic in [columns], with the path of the field as its column",
+                "give {} a topic and a field in [columns], the field a path such as \"angle.roll\"",
                 quantity.name()
             )),
             Self::MissingTopic { topic, present, .. } => nearest(topic, present)
@@ -70,7 +70,7 @@ impl ReplayError {
                 Some("convert the recording to JSON messages, or export it to CSV".to_owned())
             }
             Self::Field { .. } => Some(
-                "column in [columns] is the path of a number in the message, such as \
+                "field in [columns] is the path of a number in the message, such as \
                  \"angle.roll\"; leave time out to take the log time"
                     .to_owned(),
             ),

@@ -125,8 +125,9 @@ fn check_columns(root: &Section<'_>, columns: Option<&Columns>, recordings: &[Re
 fn check_exciter(root: &Section<'_>, columns: &Columns) {
     let force = columns.channels.iter().any(|channel| channel.quantity == Quantity::Force);
     if force && !root.holds("exciter") {
-        root.mistake(
+        root.mistake_below(
             "columns",
+            "force",
             "a force is recorded, but no [exciter] says how it becomes a moment".to_owned(),
             "add [exciter] with `moment_arm_m = ...`, or drop `force` from [columns] to use \
              the decays alone",

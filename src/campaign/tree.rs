@@ -129,6 +129,14 @@ impl<'s> Section<'s> {
         below.is_some_and(|table| table.contains_key(key))
     }
 
+    /// Adds a mistake about a key of a table below this one.
+    pub(super) fn mistake_below(&self, table: &str, key: &str, message: String, hint: &str) {
+        let below = self.table.get(table).and_then(|value| value.get_ref().as_table());
+        let held = below.and_then(|table| table.get_key_value(key));
+        let line = held.map(|(key, _)| self.source.line(key.span().start));
+        self.source.add(line.or(self.line(table)), message, Some(hint.to_owned()));
+    }
+
     /// Adds a mistake about a key.
     pub(super) fn mistake(&self, key: &str, message: String, hint: impl Into<String>) {
         self.source.add(self.line(key), message, Some(hint.into()));
