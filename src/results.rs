@@ -62,3 +62,30 @@ pub struct Results {
     /// One per recording read.
     pub overviews: Vec<Overview>,
 }
+
+/// Periods that a rod may take from one steady excitation to the next, or to rest.
+const CHANGEOVER_PERIODS: f64 = 5.0;
+
+impl Results {
+    /// Refusals to be judged, then the short changeovers beside forced runs: the rod starts, stops
+    /// or goes over to its next frequency. Each in order.
+    pub fn refusals_and_changeovers(&self) -> (Vec<&RejectedStretch>, Vec<&RejectedStretch>) {
+        self.rejected.iter().partition(|stretch| {
+            self.runs
+                .iter()
+                .filter(|run| run.recording == stretch.recording)
+                .all(|run| !stretch.is_changeover_of(run))
+        })
+    }
+}
+
+impl RejectedStretch {
+    /// Whether the stretch is short and touches this forced run.
+    fn is_changeover_of(&self, run: &IdentifiedRun) -> bool {
+        let Some(forced) = &run.identification.forced else { return false };
+        let limit_s = CHANGEOVER_PERIODS * std::f64::consts::TAU / forced.frequency_rad_s.mean;
+        let before_s = (run.run.start_s - self.end_s).abs();
+        let after_s = (self.start_s - run.run.end_s).abs();
+        self.end_s - self.start_s <= limit_s && before_s.min(after_s) <= limit_s
+    }
+}

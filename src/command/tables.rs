@@ -12,17 +12,20 @@ const STRETCHES_TOLD: usize = 10;
 /// The damping table, the laws and the first of the stretches that were not used.
 pub(super) fn human(out: &mut dyn Write, results: &Results) -> io::Result<()> {
     writeln!(out, "{}", report::damping_table(results).trim_end())?;
-    let rejected = &results.rejected;
-    if rejected.is_empty() {
-        return Ok(());
+    let (refused, changeovers) = results.refusals_and_changeovers();
+    if !refused.is_empty() {
+        writeln!(out, "\nnot used:")?;
     }
-    writeln!(out, "\nnot used:")?;
-    for stretch in rejected.iter().take(STRETCHES_TOLD) {
+    for stretch in refused.iter().take(STRETCHES_TOLD) {
         let (recording, start_s, end_s) = (&stretch.recording, stretch.start_s, stretch.end_s);
         writeln!(out, "  {recording}  {start_s:.2} to {end_s:.2} s: {}", stretch.reason)?;
     }
-    if let Some(more) = rejected.len().checked_sub(STRETCHES_TOLD).filter(|more| *more > 0) {
+    if let Some(more) = refused.len().checked_sub(STRETCHES_TOLD).filter(|more| *more > 0) {
         writeln!(out, "  and {more} more; the report and --json hold every one")?;
+    }
+    if !changeovers.is_empty() {
+        let n = changeovers.len();
+        writeln!(out, "\n{n} changeovers between excitations left out; the report lists them")?;
     }
     Ok(())
 }

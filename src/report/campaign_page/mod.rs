@@ -84,7 +84,7 @@ impl<'a> CampaignPage<'a> {
 /// The page of the campaign.
 pub(super) fn html(campaign: &Campaign, results: &Results) -> Markup {
     let page = CampaignPage { campaign, results };
-    let (refused, changeovers) = rejected::parted(&page);
+    let (refused, changeovers) = results.refusals_and_changeovers();
     let body = html! {
         h1 { (campaign.name) }
         p.lead {

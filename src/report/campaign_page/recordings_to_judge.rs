@@ -11,7 +11,7 @@ use crate::results::Overview;
 const N_RECORDINGS_MAX: usize = 12;
 
 pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
-    let (refused, _) = rejected::parted(page);
+    let (refused, _) = page.results.refusals_and_changeovers();
     let drawn: Vec<_> = page
         .results
         .overviews
