@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::{CampaignPage, rejected};
+use super::CampaignPage;
 use crate::report::document::section;
 use crate::report::figure::{Axis, Figure, Hue, Ink, Panel};
 use crate::results::Overview;

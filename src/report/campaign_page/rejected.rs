@@ -7,7 +7,6 @@ use crate::report::document::{number_cell, section, table};
 use crate::report::number::fixed;
 use crate::results::RejectedStretch;
 
-
 pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
     let (refused, changeovers) = page.results.refusals_and_changeovers();
     if refused.is_empty() && changeovers.is_empty() {
