@@ -51,6 +51,14 @@ pub struct Identification {
     pub remarks: Vec<String>,
 }
 
+impl Identification {
+    /// Frequency [rad/s] at which the model rolls: that of the excitation, or its own.
+    pub fn rolling_frequency_rad_s(&self) -> f64 {
+        let forced = self.forced.as_ref().map(|forced| forced.frequency_rad_s);
+        forced.unwrap_or(self.natural_frequency_rad_s).mean
+    }
+}
+
 /// `B/(I+dI) = b1 phi' + b3 phi'^3` fitted to one run (Sec. 4.1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DampingFit {
@@ -63,12 +71,12 @@ pub struct DampingFit {
 }
 
 impl DampingFit {
-    /// Estimate of `b1 + weight b3` [1/s], the weight of the cubic coefficient in [1/s2].
-    pub fn equivalent_per_s(&self, cubic_weight: f64) -> Estimate {
-        let (linear, cubic) = (self.b1_per_s, self.b3_s.scaled(cubic_weight));
-        let shared = 2.0 * self.correlation * linear.sd * cubic.sd;
-        let variance = linear.sd.powi(2) + cubic.sd.powi(2) + shared;
-        Estimate::normal(linear.mean + cubic.mean, variance.max(0.0).sqrt())
+    /// Estimate of `p b1 + q b3`, as a normal with the posterior correlation of the two.
+    pub fn combination(&self, p: f64, q: f64) -> Estimate {
+        let (sd1, sd3) = (p * self.b1_per_s.sd, q * self.b3_s.sd);
+        let variance = sd1 * sd1 + sd3 * sd3 + 2.0 * self.correlation * sd1 * sd3;
+        let mean = p * self.b1_per_s.mean + q * self.b3_s.mean;
+        Estimate::normal(mean, variance.max(0.0).sqrt())
     }
 }
 

@@ -6,6 +6,7 @@ use crate::campaign::Campaign;
 use crate::inverse::estimate::Estimate;
 use crate::inverse::identification::{DampingFit, EquivalentDamping};
 use crate::results::IdentifiedRun;
+use crate::roll::damping::cubic_weight;
 
 /// Roll amplitude [deg] at which runs are compared with each other.
 pub(crate) const COMPARISON_DEG: f64 = 5.0;
@@ -92,21 +93,12 @@ pub(crate) fn fitted_equivalent_damping(
     frequency_rad_s: f64,
     amplitude_rad: f64,
 ) -> Estimate {
-    let weight = 0.75 * (frequency_rad_s * amplitude_rad).powi(2);
-    law_at(fit, 1.0, weight)
+    fit.combination(1.0, cubic_weight(frequency_rad_s, amplitude_rad))
 }
 
 /// Mean and standard deviation [rad/s2] of `b1 phi' + b3 phi'^3`.
 pub(crate) fn fitted_damping(fit: &DampingFit, roll_rate_rad_per_s: f64) -> Estimate {
-    law_at(fit, roll_rate_rad_per_s, roll_rate_rad_per_s.powi(3))
-}
-
-/// `p b1 + q b3` with the posterior correlation of the two.
-fn law_at(fit: &DampingFit, p: f64, q: f64) -> Estimate {
-    let (sd1, sd3) = (p * fit.b1_per_s.sd, q * fit.b3_s.sd);
-    let variance = sd1 * sd1 + sd3 * sd3 + 2.0 * fit.correlation * sd1 * sd3;
-    let mean = p * fit.b1_per_s.mean + q * fit.b3_s.mean;
-    Estimate::normal(mean, variance.max(0.0).sqrt())
+    fit.combination(roll_rate_rad_per_s, roll_rate_rad_per_s.powi(3))
 }
 
 /// The product of two independent quantities; the interval keeps the skew of the first.

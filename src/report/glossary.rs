@@ -61,7 +61,7 @@ const CONVENTIONS: &[&str] = &[
     "I+ΔI is K/ω_{n}² in a decay and (K A₁ − M_{a} cos ε)/(ω² A₁), equation (4.5), in a forced \
      run. Hull particulars are taken as exact: an error of 2 % in GM is one of 2 % in every B \
      and in B̂₄₄, and none in b.",
-    "Equivalent damping is by equal energy per cycle: b_{eq}(A) = b₁ + ¾ (ω_{n} A)² b₃. It is \
+    "Equivalent damping is by equal energy per cycle: b_{eq}(A) = b₁ + ¾ (ω A)² b₃. It is \
      the value to compare between runs; b₁ and b₃ alone trade against each other, and their \
      correlation is given.",
     "The law value comes from b₁ and b₃ of the whole run; the local value from the energy \

@@ -61,7 +61,7 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
     // The paper fits its law to its own scatter of moments.
     let damping = told.scatter_fit.unwrap_or_else(|| law.damping());
     let equivalent = |cubic_weight: f64| match told.scatter_fit {
-        Some(fit) => fit.equivalent_per_s(cubic_weight),
+        Some(fit) => fit.combination(1.0, cubic_weight),
         None => law.combination(1.0, cubic_weight),
     };
     let largest_rad = told.moment.roll_rad.iter().map(|roll| roll.abs()).fold(0.0, f64::max);

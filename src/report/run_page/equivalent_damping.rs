@@ -74,7 +74,7 @@ fn figure(page: &RunPage) -> Option<Figure> {
     if largest <= 0.0 {
         return None;
     }
-    let w = identification.natural_frequency_rad_s.mean;
+    let w = identification.rolling_frequency_rad_s();
     let amplitude: Vec<_> =
         (0..=N_LAW).map(|k| largest * f64::from(k) / f64::from(N_LAW)).collect();
     let law: Vec<_> = amplitude
@@ -96,7 +96,7 @@ fn figure(page: &RunPage) -> Option<Figure> {
         .line(
             &degrees,
             &ends(&law, |at| at.mean),
-            Ink::new(Hue::Vermillion).wide(1.8).named("law b₁ + ¾ (ω_{n} A)² b₃"),
+            Ink::new(Hue::Vermillion).wide(1.8).named("law b₁ + ¾ (ω A)² b₃"),
         );
     let panel = with_measured(page, panel, &local);
     Some(
@@ -107,7 +107,7 @@ fn figure(page: &RunPage) -> Option<Figure> {
         )
         .caption(
             "Points use no law; bars that leave the frame end at its edge. The law is drawn \
-             up to the largest roll of the run.",
+             up to the largest roll of the run, with ω the frequency at which the model rolls.",
         )
         .panel(panel),
     )
