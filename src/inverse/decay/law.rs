@@ -58,8 +58,8 @@ impl<'a> Law<'a> {
 
 /// Equivalent damping at the reported amplitudes by a law, with the half cycles' own beside it.
 ///
-/// The law is given for each weight of its cubic coefficient [1/s2]; `largest_rad` [rad] is the roll
-/// that the run reached.
+/// The law is given for each weight of its cubic coefficient [1/s2]; `largest_rad` [rad] is the
+/// roll that the run reached.
 pub(super) fn equivalent_damping(
     law: impl Fn(f64) -> Estimate,
     b3_s: f64,
