@@ -6,7 +6,7 @@ use crate::campaign::Campaign;
 use crate::inverse::estimate::Estimate;
 use crate::inverse::identification::{DampingFit, EquivalentDamping};
 use crate::results::IdentifiedRun;
-use crate::roll::damping::cubic_weight;
+use crate::roll::damping::{critical_ratio, cubic_weight};
 
 /// Roll amplitude [deg] at which runs are compared with each other.
 pub(crate) const COMPARISON_DEG: f64 = 5.0;
@@ -72,7 +72,8 @@ impl<'a> FieldUnits<'a> {
 
     /// Ratio to critical damping `zeta = b_eq / (2 w)` [-] of `b_eq` [1/s].
     pub(crate) fn damping_ratio(&self, per_inertia: Estimate) -> Estimate {
-        per_inertia.scaled(0.5 / self.run.identification.natural_frequency_rad_s.mean)
+        let w = self.run.identification.natural_frequency_rad_s.mean;
+        per_inertia.scaled(critical_ratio(1.0, w))
     }
 
     /// Relative decrement per half cycle `dphi / phi_m = pi b_eq / (2 w)` [-] of `b_eq` [1/s].

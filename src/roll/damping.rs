@@ -15,8 +15,3 @@ pub fn cubic_weight(frequency_rad_s: f64, amplitude_rad: f64) -> f64 {
 pub fn critical_ratio(equivalent_per_s: f64, natural_frequency_rad_s: f64) -> f64 {
     equivalent_per_s / (2.0 * natural_frequency_rad_s)
 }
-
-/// Relative decrement over one half cycle, `pi zeta` [-], of linear damping.
-pub fn half_cycle_decrement(equivalent_per_s: f64, natural_frequency_rad_s: f64) -> f64 {
-    std::f64::consts::PI * critical_ratio(equivalent_per_s, natural_frequency_rad_s)
-}

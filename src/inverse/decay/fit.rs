@@ -61,8 +61,6 @@ pub struct DecayPosterior {
     pub solutions: Vec<Solution>,
     /// The least-squares decay with linear restoring, and its zero offset [rad].
     pub linear: (Decay, f64),
-    /// The least-squares decay with cubic restoring, and its zero offset [rad].
-    pub cubic: (Decay, f64),
 }
 
 impl DecayPosterior {
@@ -119,7 +117,7 @@ pub fn fit(record: &Record, start: Decay, offset_rad: f64) -> Result<DecayPoster
         solution.weight /= total;
     }
     solutions.retain(|s| s.weight > 1e-9);
-    Ok(DecayPosterior { solutions, linear, cubic })
+    Ok(DecayPosterior { solutions, linear })
 }
 
 struct Fit<'a> {

@@ -19,7 +19,7 @@ pub enum Column<'a> {
 }
 
 /// What the filter knew before each sample, kept for the smoother.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Trail<const N: usize> {
     /// The step that led to the sample (the first one is not used).
     pub steps: Vec<Step<N>>,
@@ -126,19 +126,6 @@ impl Column<'_> {
     }
 }
 
-impl<const N: usize> Trail<N> {
-    /// An empty trail.
-    pub fn new() -> Self {
-        Self { steps: Vec::new(), roots: Vec::new(), states: Vec::new(), innovations: Vec::new() }
-    }
-}
-
-impl<const N: usize> Default for Trail<N> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// The root of the covariance after a step.
 fn spread<const N: usize>(step: &Step<N>, root: &Matrix<N>) -> Matrix<N> {
     let mut columns = [[0.0; N]; 16];
@@ -174,11 +161,6 @@ impl Triangle {
     /// Entry of row `i`, column `j`.
     pub fn at(&self, i: usize, j: usize) -> f64 {
         self.entries[i * self.size + j]
-    }
-
-    /// Number of columns.
-    pub fn size(&self) -> usize {
-        self.size
     }
 
     /// Columns of the inverse of the leading `count` by `count` triangle.

@@ -30,7 +30,7 @@ pub fn smooth<const N: usize>(
 ) -> (Filtered, Smoothed) {
     let columns: Vec<Column<'_>> =
         flat.iter().copied().chain(records.iter().map(|r| Column::Record(r))).collect();
-    let mut trail = Trail::new();
+    let mut trail = Trail::default();
     let filtered = filter(prior, tau, &columns, Some(&mut trail));
     let flat_count = flat.len();
     let weights: Vec<Vec<f64>> = (0..records.len())
