@@ -152,6 +152,8 @@ fn identified(
         },
         equivalent_damping: equivalent_damping(truth, amplitude),
         half_cycles: half_cycles(truth, &time_s, &motion, random),
+        damping_curve: Vec::new(),
+        beliefs: None,
         moment: moment(truth, &time_s, &motion, &measured, random),
         resimulation: Resimulation {
             time_s: time_s.clone(),

@@ -35,6 +35,10 @@ pub struct Identification {
     pub equivalent_damping: Vec<EquivalentDamping>,
     /// Equivalent damping half cycle by half cycle from the moment history, in order of time.
     pub half_cycles: Vec<HalfCycle>,
+    /// Damping moment against roll rate whatever its form, rising rates; empty for a forced run.
+    pub damping_curve: Vec<CurvePoint>,
+    /// What the evidence says of law, restoring and noise; none for a forced run.
+    pub beliefs: Option<Beliefs>,
     /// The inferred moment history.
     pub moment: MomentHistory,
     /// The run simulated again with the fitted law.
@@ -78,6 +82,46 @@ impl DampingFit {
         let mean = p * self.b1_per_s.mean + q * self.b3_s.mean;
         Estimate::normal(mean, variance.max(0.0).sqrt())
     }
+}
+
+/// Damping moment per unit inertia at one roll rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurvePoint {
+    /// Roll rate [rad/s].
+    pub rate_rad_per_s: f64,
+    /// `B/(I+dI)` there [rad/s2].
+    pub damping_per_s2: Estimate,
+}
+
+/// Posterior probabilities of what a decay may be made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Beliefs {
+    /// Forms of damping law, each with its coefficients.
+    pub forms: Vec<FormBelief>,
+    /// That the restoring has a cubic part.
+    pub cubic_restoring: f64,
+    /// Cubic part `k3` of the restoring, given that there is one [1/rad2].
+    pub k3_per_rad2: Estimate,
+    /// That the law leaves more than noise, by the order 1 to 3 of what it leaves.
+    pub misfit_orders: [f64; 3],
+    /// That neighbouring samples of the noise are correlated.
+    pub coloured_noise: f64,
+    /// Step between the values that the roll channel can take, if it is coarse enough to be seen
+    /// [rad].
+    pub quantum_rad: Option<f64>,
+    /// Samples with independent noise that would know as much as the run's [-].
+    pub n_effective: f64,
+}
+
+/// One form of damping law.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FormBelief {
+    /// Its equation.
+    pub equation: &'static str,
+    /// Posterior probability among the forms [-].
+    pub probability: f64,
+    /// Its coefficients: symbol, unit and estimate.
+    pub coefficients: Vec<(&'static str, &'static str, Estimate)>,
 }
 
 /// Equivalent linear damping `b_eq` at one roll amplitude.

@@ -30,32 +30,49 @@ pub fn estimate(components: &[Component]) -> Estimate {
 }
 
 /// The value below which the mixture has probability `level`.
-fn quantile(components: &[Component], level: f64) -> f64 {
-    let unit = Normal::standard();
+pub fn quantile(components: &[Component], level: f64) -> f64 {
     let total: f64 = components.iter().map(|c| c.weight).sum();
-    let below = |x: f64| {
-        let sum: f64 = components
-            .iter()
-            .map(|c| {
-                let share = if c.sd > 0.0 {
-                    unit.cdf((x - c.mean) / c.sd)
-                } else {
-                    f64::from(u8::from(x >= c.mean))
-                };
-                c.weight * share
-            })
-            .sum();
-        sum / total
-    };
     let reach = |sign: f64| components.iter().map(move |c| c.mean + sign * 9.0 * c.sd);
     let mut low = reach(-1.0).fold(f64::INFINITY, f64::min);
     let mut high = reach(1.0).fold(f64::NEG_INFINITY, f64::max);
-    // Each halving gains one bit; sixty leave nothing above rounding.
+    let mean = components.iter().map(|c| c.weight * c.mean).sum::<f64>() / total;
+    let spread = |c: &Component| c.weight * (c.sd.powi(2) + (c.mean - mean).powi(2));
+    let sd = (components.iter().map(spread).sum::<f64>() / total).sqrt();
+    let mut x = mean + sd * Normal::standard().inverse_cdf(level);
+    // Newton's steps where they stay inside the bracket, halvings where they do not.
     for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if below(middle) < level { low = middle } else { high = middle }
+        let (below, density) = probability_below(components, total, x);
+        *(if below < level { &mut low } else { &mut high }) = x;
+        let step = (below - level) / density;
+        let next = x - step;
+        let safe = if next > low && next < high { next } else { 0.5 * (low + high) };
+        if (safe - x).abs() < 1e-9 * sd {
+            return safe;
+        }
+        x = safe;
     }
-    0.5 * (low + high)
+    x
+}
+
+/// Probability that the mixture lies below `x`, and its density there.
+fn probability_below(components: &[Component], total: f64, x: f64) -> (f64, f64) {
+    let unit = Normal::standard();
+    let (mut below, mut density) = (0.0, 0.0);
+    for c in components {
+        if c.sd > 0.0 {
+            let z = (x - c.mean) / c.sd;
+            below += c.weight * unit.cdf(z);
+            density += c.weight * (-0.5 * z * z).exp() / (c.sd * std::f64::consts::TAU.sqrt());
+        } else {
+            below += c.weight * f64::from(u8::from(x >= c.mean));
+        }
+    }
+    (below / total, density / total)
+}
+
+/// Probability that the mixture lies below `x`.
+pub fn cdf(components: &[Component], x: f64) -> f64 {
+    probability_below(components, components.iter().map(|c| c.weight).sum(), x).0
 }
 
 #[cfg(test)]

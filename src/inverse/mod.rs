@@ -14,6 +14,7 @@ mod amplitudes;
 mod observed;
 mod paper_method;
 mod plausible;
+mod quantum;
 
 use identification::{Identification, Method};
 

@@ -4,8 +4,7 @@ use super::estimate::Estimate;
 use super::identification::{Chain, DampingFit, MomentHistory};
 use super::paper::{ChainSettings, Convolution, Hyperpriors, sample};
 use super::record::Record;
-use super::state_space::filter::Triangle;
-use super::state_space::smoother::explained_by;
+use super::state_space::triangle::Triangle;
 
 /// Samples of a record that the chains see: as many as the paper's runs have, more where a period
 /// would have fewer than twenty, for its impulses (2.6) need them close.
@@ -75,9 +74,10 @@ fn interpolated(time_s: &[f64], values: &[f64], at_s: f64) -> f64 {
 fn plain_fit(rate_rad_per_s: &[f64], moment_per_s2: &[f64]) -> DampingFit {
     let mut triangle = Triangle::new(3);
     for (rate, moment) in rate_rad_per_s.iter().zip(moment_per_s2) {
-        triangle.add(&mut [*rate, rate.powi(3), -moment]);
+        triangle.push([*rate, rate.powi(3), -moment]);
     }
-    let values: Vec<f64> = explained_by(&triangle, 2, 2).iter().map(|w| -w).collect();
+    triangle.settle();
+    let values: Vec<f64> = triangle.explained_by(2, 2).iter().map(|w| -w).collect();
     let noise = triangle.at(2, 2).abs() / (rate_rad_per_s.len() as f64 - 2.0).sqrt();
     let (r11, r12, r22) = (triangle.at(0, 0), triangle.at(0, 1), triangle.at(1, 1));
     let b3_sd = noise / r22.abs();

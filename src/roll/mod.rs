@@ -3,3 +3,4 @@
 pub mod damping;
 pub mod equation;
 pub mod exciting_moment;
+pub mod response;

@@ -1,340 +1,242 @@
-//! Damping coefficients of a decay: the equation of rolling fitted to the record.
+//! Least squares of the roll equation on a decay, and the equation linearised there.
 //!
-//! The law of Sec. 4.1 projected on `U` through the likelihood is the law fitted to the roll,
-//! so that 500 correlated moments are not counted as 500 observations. Where the law leaves nothing
-//! but noise, the posterior is that of least squares. Where it leaves more, which the evidence of a
-//! walking moment (2.10) beside the law tells, the covariance is that of least squares under the
-//! residual's own correlation (Newey and West, Econometrica 55, 1987), and so is wider.
+//! The law of Sec. 4.1 projected on `U` through the likelihood is the law fitted to the roll, so
+//! that 500 correlated moments are not counted as 500 observations.
 
-use statrs::function::gamma::ln_gamma;
-
-use crate::inverse::mixture::Component;
+use super::curve::{N_CURVE, Scale};
+use super::form::power_curve;
 use crate::inverse::record::Record;
-use crate::inverse::state_space::filter::{Column, Filtered, filter};
-use crate::inverse::state_space::smoother::explained_by;
-use crate::inverse::state_space::transition::IntegratedWiener;
-use crate::roll::equation::{Decay, N_PARAMETERS, Sensitive};
+use crate::inverse::state_space::triangle::Triangle;
+use crate::roll::damping::equivalent_per_s;
+use crate::roll::equation::{Decay, Motion};
+use crate::roll::response::{Path, Response};
 
-/// Unknowns of a fit: those of [`Decay`], then the zero offset of the roll channel.
-pub const N_UNKNOWNS: usize = N_PARAMETERS + 1;
+/// Position of the initial roll among the unknowns.
+pub const ROLL: usize = 0;
+/// Position of the initial roll rate.
+pub const RATE: usize = 1;
+/// Position of the natural frequency.
+pub const FREQUENCY: usize = 2;
+/// Position of the zero offset of the roll channel.
+pub const ZERO: usize = 3;
+/// Position of the cubic restoring.
+pub const CUBIC_RESTORING: usize = 4;
+/// Position of the first coefficient of the damping curve.
+pub const CURVE: usize = 5;
+/// Number of unknowns.
+pub const N_UNKNOWNS: usize = CURVE + N_CURVE;
 
-/// Position of the linear damping among the unknowns.
-pub const B1: usize = 3;
-/// Position of the cubic damping among the unknowns.
-pub const B3: usize = 4;
-/// Position of the cubic restoring among the unknowns.
-pub const K3: usize = 5;
-/// Position of the zero offset among the unknowns.
-pub const OFFSET: usize = N_PARAMETERS;
+/// Prior standard deviation of the cubic restoring [1/rad2]: wall-sided hulls reach +0.6, hulls
+/// that lose stability -1.
+pub const CUBIC_RESTORING_SD: f64 = 1.0;
 
-/// Prior width of the cubic restoring [1/rad2]: wall-sided hulls reach +0.6, hulls that lose
-/// stability -1.
-const CUBIC_RESTORING_SD: f64 = 1.0;
+/// A decay and the zero offset of its roll channel [rad].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// The decay.
+    pub decay: Decay,
+    /// What the roll channel reads at rest [rad].
+    pub zero_rad: f64,
+}
 
-/// Intensities of the walking moment that are weighed against none. The smallest changes no record
-/// that a tank is long enough for; the largest leaves the law nothing to explain.
-const WALKS: [f64; 8] = [0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0];
-
-/// One linearised posterior of the unknowns.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Solution {
-    /// Posterior weight among all solutions.
-    pub weight: f64,
-    /// Values of the unknowns.
-    pub mean: [f64; N_UNKNOWNS],
-    /// Covariance of the unknowns.
-    pub covariance: [[f64; N_UNKNOWNS]; N_UNKNOWNS],
-    /// Standard deviation of the roll noise [rad].
-    pub noise_sd_rad: f64,
-    /// Whether the restoring has a cubic part.
-    pub cubic_restoring: bool,
-    /// Posterior probability that the law leaves more than noise.
-    pub probability_of_misfit: f64,
-    /// Residual of the roll [rad], sample by sample.
+/// The roll equation linearised at its least-squares point.
+pub struct Linearised {
+    /// Where.
+    pub point: Point,
+    /// Scale of the damping curve.
+    pub scale: Scale,
+    /// Damping curve and cubic restoring of the fit, among the unknowns; the others are nil.
+    pub fitted: [f64; N_UNKNOWNS],
+    /// The motion at each sample.
+    pub motion: Vec<Motion>,
+    /// Response to each unknown at each sample; the zero offset does not move the model.
+    pub responses: Vec<Vec<Response>>,
+    /// What a unit of each unknown changes in the record [rad], sample by sample.
+    pub columns: Vec<Vec<f64>>,
+    /// The record less the fit [rad].
     pub residual_rad: Vec<f64>,
 }
 
-/// The posterior of the unknowns of a decay: a mixture over linear and cubic restoring.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DecayPosterior {
-    /// The solutions, of which the weights sum to one.
-    pub solutions: Vec<Solution>,
-    /// The least-squares decay with linear restoring, and its zero offset [rad].
-    pub linear: (Decay, f64),
-}
-
-impl DecayPosterior {
-    /// Components of the mixture of one linear combination of the unknowns.
-    pub fn combination(&self, weights: &[f64; N_UNKNOWNS]) -> Vec<Component> {
-        let dot = |a: &[f64; N_UNKNOWNS]| a.iter().zip(weights).map(|(a, w)| a * w).sum::<f64>();
-        self.solutions
+impl Linearised {
+    /// Linearises at `point`.
+    pub fn new(record: &Record, point: Point) -> Self {
+        let path = Path::new(&point.decay, &record.time_s);
+        let motion: Vec<Motion> = path.motion().collect();
+        let largest = |of: fn(&Motion) -> f64| motion.iter().map(of).fold(0.0, f64::max);
+        let rate_rad_per_s = largest(|m| m.roll_rate_rad_per_s.abs());
+        let amplitude_rad = largest(|m| m.roll_rad.abs());
+        let Decay { natural_frequency_rad_s: w, b1_per_s, b2, b3_s, .. } = point.decay;
+        let quadratic = 8.0 / (3.0 * std::f64::consts::PI) * b2 * w * amplitude_rad;
+        let damping_per_s = quadratic + equivalent_per_s(b1_per_s, b3_s, w, amplitude_rad);
+        // A record that grows would have none; a hundredth of critical is a size like any other.
+        let scale = Scale { damping_per_s: damping_per_s.max(0.002 * w), rate_rad_per_s };
+        let mut fitted = [0.0; N_UNKNOWNS];
+        fitted[CUBIC_RESTORING] = point.decay.restoring_cubic_per_rad2;
+        let parts = [b1_per_s, b2 * rate_rad_per_s, b3_s * rate_rad_per_s.powi(2)];
+        for (part, power) in parts.into_iter().zip(1..) {
+            for (fitted, curve) in fitted[CURVE..].iter_mut().zip(power_curve(power)) {
+                *fitted += part * curve / scale.damping_per_s;
+            }
+        }
+        let mut responses = common_responses(&path, &point.decay);
+        for k in 0..N_CURVE {
+            responses.push(path.to_moment(|_, rate| -scale.moments(rate)[k]));
+        }
+        let columns: Vec<Vec<f64>> = responses
             .iter()
-            .map(|s| Component {
-                weight: s.weight,
-                mean: dot(&s.mean),
-                sd: s
-                    .covariance
-                    .iter()
-                    .zip(weights)
-                    .map(|(row, w)| w * dot(row))
-                    .sum::<f64>()
-                    .max(0.0)
-                    .sqrt(),
-            })
-            .collect()
+            .enumerate()
+            .map(|(unknown, response)| seen(record, response, unknown))
+            .collect();
+        let residual_rad = residual(record, &point, &motion);
+        Self { point, scale, fitted, motion, responses, columns, residual_rad }
     }
 
-    /// Components of the mixture of one unknown.
-    pub fn unknown(&self, position: usize) -> Vec<Component> {
-        let mut weights = [0.0; N_UNKNOWNS];
-        weights[position] = 1.0;
-        self.combination(&weights)
+    /// Change of `U = phi'' + w^2 phi` [rad/s2] at one sample per unit of an unknown.
+    pub fn moment_response(&self, unknown: usize, sample: usize) -> f64 {
+        let w = self.point.decay.natural_frequency_rad_s;
+        let response = &self.responses[unknown][sample];
+        let direct =
+            if unknown == FREQUENCY { 2.0 * w * self.motion[sample].roll_rad } else { 0.0 };
+        response.acceleration + w * w * response.roll + direct
     }
 
-    /// Posterior probability that the restoring has a cubic part.
-    pub fn probability_of_cubic_restoring(&self) -> f64 {
-        self.solutions.iter().filter(|s| s.cubic_restoring).map(|s| s.weight).sum()
+    /// `U = phi'' + w^2 phi` [rad/s2] of the fit at one sample.
+    pub fn moment_per_s2(&self, sample: usize) -> f64 {
+        let motion = &self.motion[sample];
+        let w = self.point.decay.natural_frequency_rad_s;
+        motion.roll_acceleration_rad_per_s2 + w * w * motion.roll_rad
     }
 }
 
-/// Fits a decay that starts near `start`, whose roll channel reads `offset_rad` [rad] at rest.
+/// Responses to everything but the damping.
+fn common_responses(path: &Path, decay: &Decay) -> Vec<Vec<Response>> {
+    let (w, k3) = (decay.natural_frequency_rad_s, decay.restoring_cubic_per_rad2);
+    vec![
+        path.to_initial_roll(),
+        path.to_initial_rate(),
+        path.to_moment(|phi, _| -2.0 * w * phi * (1.0 + k3 * phi * phi)),
+        path.motion().map(|_| Response { roll: 0.0, rate: 0.0, acceleration: 0.0 }).collect(),
+        path.to_moment(|phi, _| -w * w * phi.powi(3)),
+    ]
+}
+
+/// What the record sees of a response: the mean over the instants that each value stands for.
+fn seen(record: &Record, response: &[Response], unknown: usize) -> Vec<f64> {
+    let half = 0.5 * record.spread_s2;
+    let offset = if unknown == ZERO { 1.0 } else { 0.0 };
+    response.iter().map(|r| r.roll + half * r.acceleration + offset).collect()
+}
+
+fn residual(record: &Record, point: &Point, motion: &[Motion]) -> Vec<f64> {
+    let half = 0.5 * record.spread_s2;
+    let simulated =
+        |m: &Motion| m.roll_rad + half * m.roll_acceleration_rad_per_s2 + point.zero_rad;
+    record.roll_rad.iter().zip(motion).map(|(roll, m)| roll - simulated(m)).collect()
+}
+
+/// The least-squares point near `start` for a law of these powers of the rate, with or without a
+/// cubic part of the restoring.
 ///
 /// # Errors
 /// The reason, as a sentence, when the fit does not settle.
-pub fn fit(record: &Record, start: Decay, offset_rad: f64) -> Result<DecayPosterior, String> {
-    let linear = Fit { record, cubic_restoring: false }.settle(start, offset_rad)?;
-    let cubic = Fit { record, cubic_restoring: true }.settle(linear.0, linear.1)?;
-    let mut solutions = vec![
-        Fit { record, cubic_restoring: false }.solution(linear),
-        Fit { record, cubic_restoring: true }.solution(cubic),
-    ];
-    let top = solutions.iter().map(|s| s.weight).fold(f64::NEG_INFINITY, f64::max);
-    for solution in &mut solutions {
-        solution.weight = (solution.weight - top).exp();
-    }
-    let total: f64 = solutions.iter().map(|s| s.weight).sum();
-    for solution in &mut solutions {
-        solution.weight /= total;
-    }
-    solutions.retain(|s| s.weight > 1e-9);
-    Ok(DecayPosterior { solutions, linear })
-}
-
-struct Fit<'a> {
-    record: &'a Record,
+pub fn settle(
+    record: &Record,
+    start: Point,
+    powers: &[u8],
     cubic_restoring: bool,
+) -> Result<Point, String> {
+    const LOST: &str = "the roll equation cannot be fitted to the record";
+    let active: Vec<usize> = (0..CURVE)
+        .filter(|unknown| cubic_restoring || *unknown != CUBIC_RESTORING)
+        .chain(powers.iter().map(|power| CURVE + usize::from(*power) - 1))
+        .collect();
+    let n = active.len();
+    let n_samples = record.roll_rad.len() as f64;
+    let mut here = start;
+    let mut best = f64::INFINITY;
+    let mut last = (start, [0.0; N_MOVED]);
+    let mut share = 1.0;
+    for _ in 0..60 {
+        let triangle = normal_triangle(record, &here, &active);
+        let total: f64 = (0..=n).map(|i| triangle.at(i, n).powi(2)).sum::<f64>().sqrt();
+        if !total.is_finite() || total > best * (1.0 + 1e-9) {
+            // Too far: go back half of the way.
+            share *= 0.5;
+            if share < 1e-4 {
+                return if best.is_finite() { Ok(last.0) } else { Err(LOST.into()) };
+            }
+            here = moved(&last.0, &last.1, share);
+            continue;
+        }
+        best = total;
+        let residual = triangle.at(n, n).abs();
+        let mut step = [0.0; N_MOVED];
+        for (position, weight) in active.iter().zip(triangle.explained_by(n, n)) {
+            step[*position] = -weight;
+        }
+        if step.iter().any(|s| !s.is_finite()) {
+            return Err(LOST.into());
+        }
+        last = (here, step);
+        share = 1.0;
+        here = moved(&here, &step, 1.0);
+        // After a step worth a thirtieth of a standard deviation the next is worth a thousandth.
+        let gain = (total * total - residual * residual).max(0.0).sqrt();
+        if gain < 0.03 * residual / n_samples.sqrt() || gain < 1e-12 * record.scale_rad() {
+            return Ok(here);
+        }
+    }
+    Ok(last.0)
 }
 
-impl Fit<'_> {
-    /// Gauss-Newton steps until they are far below the noise.
-    fn settle(&self, mut decay: Decay, mut offset_rad: f64) -> Result<(Decay, f64), String> {
-        let mut step_share = 1.0;
-        let mut last_residual = f64::INFINITY;
-        let mut last = (decay, offset_rad);
-        let mut last_step = [0.0; N_UNKNOWNS];
-        for _ in 0..40 {
-            let filtered = self.whiten(&self.columns(&decay, offset_rad), &decay, 0.0);
-            let residual = filtered.triangle.at(self.n_active(), self.n_active()).abs();
-            let total = self.misfit(&filtered);
-            if !total.is_finite() || total > last_residual * (1.0 + 1e-9) {
-                // Too far: go back half of the way.
-                step_share *= 0.5;
-                if step_share < 1e-4 {
-                    return Err("the roll equation cannot be fitted to the record".into());
-                }
-                (decay, offset_rad) = moved(last, &last_step, step_share);
-                continue;
-            }
-            last_residual = total;
-            step_share = 1.0;
-            last = (decay, offset_rad);
-            last_step = self.step(&filtered);
-            let gain = (total * total - residual * residual).max(0.0).sqrt();
-            (decay, offset_rad) = moved(last, &last_step, 1.0);
-            // A step worth a thousandth of a standard deviation of the noise changes nothing.
-            if gain < 1e-3 * residual / (filtered.n_samples as f64).sqrt() {
-                return Ok((decay, offset_rad));
-            }
-        }
-        Ok(last)
-    }
+/// Unknowns that the fit can move: those of the equation, then three powers of the rate.
+const N_MOVED: usize = CURVE + 3;
 
-    fn n_active(&self) -> usize {
-        if self.cubic_restoring { N_UNKNOWNS } else { N_UNKNOWNS - 1 }
-    }
-
-    /// Positions of the unknowns that this fit moves.
-    fn active(&self) -> impl Iterator<Item = usize> {
-        let cubic_restoring = self.cubic_restoring;
-        (0..N_UNKNOWNS).filter(move |&p| cubic_restoring || p != K3)
-    }
-
-    /// The sensitivities of the active unknowns, then the residual.
-    fn columns(&self, decay: &Decay, offset_rad: f64) -> Vec<Vec<f64>> {
-        let motion = decay.solve(&self.record.time_s);
-        let by_unknown = |p: usize| {
-            motion.iter().map(|m| if p == OFFSET { 1.0 } else { m.by_parameter[p] }).collect()
-        };
-        let residual = |(roll, m): (&f64, &Sensitive)| roll - offset_rad - m.roll_rad;
-        let roll = self.record.roll_rad.iter().zip(&motion);
-        self.active().map(by_unknown).chain([roll.map(residual).collect()]).collect()
-    }
-
-    /// The columns whitened under a walking moment of this intensity.
-    fn whiten(&self, columns: &[Vec<f64>], decay: &Decay, walk: f64) -> Filtered {
-        let columns: Vec<Column<'_>> = columns.iter().map(|c| Column::Record(c)).collect();
-        let prior = IntegratedWiener { intensity: walk, moment_noise: 0.0 };
-        let tau = self.record.scaled_time(decay.natural_frequency_rad_s);
-        let mut filtered = filter::<3>(&prior, &tau, &columns, None);
-        if self.cubic_restoring {
-            self.add_prior(&mut filtered, decay);
-        }
-        filtered
-    }
-
-    /// The prior of the cubic restoring, as one more row in units of the noise.
-    fn add_prior(&self, filtered: &mut Filtered, decay: &Decay) {
-        let n = self.n_active();
-        let noise = filtered.triangle.at(n, n).abs() / (filtered.n_samples as f64).sqrt();
-        let mut row = vec![0.0; n + 1];
-        row[K3] = noise / CUBIC_RESTORING_SD;
-        row[n] = -noise / CUBIC_RESTORING_SD * decay.restoring_cubic_per_rad2;
-        filtered.triangle.add(&mut row);
-    }
-
-    /// Norm of the whitened residual before the step.
-    fn misfit(&self, filtered: &Filtered) -> f64 {
-        let n = self.n_active();
-        (0..=n).map(|i| filtered.triangle.at(i, n).powi(2)).sum::<f64>().sqrt()
-    }
-
-    fn step(&self, filtered: &Filtered) -> [f64; N_UNKNOWNS] {
-        let weights = explained_by(&filtered.triangle, self.n_active(), self.n_active());
-        let mut step = [0.0; N_UNKNOWNS];
-        for (position, weight) in self.active().zip(weights) {
-            step[position] = -weight;
-        }
-        step
-    }
-
-    /// The posterior linearised at the least-squares point; its weight is a logarithm.
-    fn solution(&self, point: (Decay, f64)) -> Solution {
-        let n = self.n_active();
-        let mut columns = self.columns(&point.0, point.1);
-        let lawful = self.whiten(&columns, &point.0, 0.0);
-        let weight = self.log_evidence(&lawful);
-        let walking: f64 = WALKS
-            .iter()
-            .map(|&walk| (self.log_evidence(&self.whiten(&columns, &point.0, walk)) - weight).exp())
-            .sum::<f64>()
-            / WALKS.len() as f64;
-        let probability_of_misfit = 1.0 - 1.0 / (1.0 + walking);
-        let noise_variance = lawful.triangle.at(n, n).powi(2) / (lawful.n_samples - n) as f64;
-        let residual_rad = columns.pop().expect("the residual is the last column");
-        let inverse = lawful.triangle.inverse_columns(n);
-        let mut covariance = [[0.0; N_UNKNOWNS]; N_UNKNOWNS];
-        let scores = if probability_of_misfit > 0.5 {
-            correlated_scores(&columns, &residual_rad)
+/// The triangle of the active columns and the residual, in that order.
+fn normal_triangle(record: &Record, point: &Point, active: &[usize]) -> Triangle {
+    let path = Path::new(&point.decay, &record.time_s);
+    let motion: Vec<Motion> = path.motion().collect();
+    let residual = residual(record, point, &motion);
+    let mut responses = common_responses(&path, &point.decay);
+    for power in 0..3 {
+        // A power that does not move needs no response.
+        responses.push(if active.contains(&(CURVE + power)) {
+            path.to_moment(|_, rate| -rate * rate.abs().powi(power as i32))
         } else {
             Vec::new()
-        };
-        let positions: Vec<usize> = self.active().collect();
-        // (R'R)^-1 s^2 where the residual is noise; where it is not, (R'R)^-1 S (R'R)^-1 on top,
-        // because S is itself estimated from few independent stretches and may come out small.
-        let bread = sum_of_squares(&inverse);
-        for (i, &p) in positions.iter().enumerate() {
-            for (j, &q) in positions.iter().enumerate() {
-                let white = noise_variance * bread[i][j];
-                let correlated: f64 = scores
-                    .iter()
-                    .enumerate()
-                    .map(|(k, row)| {
-                        let inner: f64 = row.iter().zip(&bread).map(|(s, b)| s * b[j]).sum();
-                        bread[i][k] * inner
-                    })
-                    .sum();
-                covariance[p][q] = white + correlated;
-            }
-        }
-        let mut mean = [0.0; N_UNKNOWNS];
-        mean[..N_PARAMETERS].copy_from_slice(&point.0.parameters());
-        mean[OFFSET] = point.1;
-        Solution {
-            weight,
-            mean,
-            covariance,
-            noise_sd_rad: noise_variance.sqrt(),
-            cubic_restoring: self.cubic_restoring,
-            probability_of_misfit,
-            residual_rad,
-        }
+        });
     }
-
-    /// Logarithm of the evidence, the noise integrated over a scale-free prior.
-    fn log_evidence(&self, filtered: &Filtered) -> f64 {
-        let n = self.n_active();
-        let shape = 0.5 * (filtered.n_samples - n) as f64;
-        let log_flat: f64 = (0..n).map(|i| filtered.triangle.at(i, i).abs().ln()).sum();
-        let prior = if self.cubic_restoring { -CUBIC_RESTORING_SD.ln() } else { 0.0 };
-        ln_gamma(shape)
-            - shape * (0.5 * filtered.triangle.at(n, n).powi(2)).ln()
-            - 0.5 * filtered.log_determinant
-            - log_flat
-            + prior
+    let columns: Vec<Vec<f64>> =
+        active.iter().map(|&u| seen(record, &responses[u], u)).chain([residual]).collect();
+    let mut triangle = Triangle::new(columns.len());
+    for sample in 0..record.roll_rad.len() {
+        triangle.push(columns.iter().map(|column| column[sample]));
     }
+    triangle.settle();
+    if let Some(position) = active.iter().position(|unknown| *unknown == CUBIC_RESTORING) {
+        let n = active.len();
+        let noise = triangle.at(n, n).abs() / (record.roll_rad.len() as f64).sqrt();
+        let mut row = vec![0.0; n + 1];
+        row[position] = noise / CUBIC_RESTORING_SD;
+        row[n] = -row[position] * point.decay.restoring_cubic_per_rad2;
+        triangle.add(&row);
+    }
+    triangle
 }
 
-/// The sum of `c c'` over the columns.
-fn sum_of_squares(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let n = columns.len();
-    let entry = |i: usize, j: usize| columns.iter().map(|c| c[i] * c[j]).sum();
-    (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
-}
-
-/// The covariance of the scores `J_t r_t` with what correlation between samples adds, by Bartlett's
-/// weights up to the lag that the scores' own persistence asks for (Andrews, Econometrica 59,
-/// 1991).
-fn correlated_scores(columns: &[Vec<f64>], residual_rad: &[f64]) -> Vec<Vec<f64>> {
-    // Sums over a few samples carry the correlation at a fraction of the cost.
-    let width = (residual_rad.len() / 1000).max(1);
-    let scores: Vec<Vec<f64>> = columns
-        .iter()
-        .map(|column| {
-            let score = |(j, r): (&[f64], &[f64])| j.iter().zip(r).map(|(j, r)| j * r).sum();
-            column.chunks(width).zip(residual_rad.chunks(width)).map(score).collect()
-        })
-        .collect();
-    let lagged = |a: &[f64], b: &[f64], lag: usize| -> f64 {
-        a[lag..].iter().zip(b).map(|(a, b)| a * b).sum()
-    };
-    let (mut above, mut below) = (0.0, 0.0);
-    for score in &scores {
-        let persistence = (lagged(score, score, 1) / lagged(score, score, 0)).clamp(0.0, 0.999);
-        above += persistence.powi(2) / (1.0 - persistence).powi(6) / (1.0 + persistence).powi(2);
-        below += 1.0 / (1.0 - persistence).powi(4);
+fn moved(from: &Point, step: &[f64; N_MOVED], share: f64) -> Point {
+    let step = step.map(|s| s * share);
+    let decay = &from.decay;
+    Point {
+        decay: Decay {
+            initial_roll_rad: decay.initial_roll_rad + step[ROLL],
+            initial_roll_rate_rad_per_s: decay.initial_roll_rate_rad_per_s + step[RATE],
+            natural_frequency_rad_s: decay.natural_frequency_rad_s + step[FREQUENCY],
+            b1_per_s: decay.b1_per_s + step[CURVE],
+            b2: decay.b2 + step[CURVE + 1],
+            b3_s: decay.b3_s + step[CURVE + 2],
+            restoring_cubic_per_rad2: decay.restoring_cubic_per_rad2 + step[CUBIC_RESTORING],
+        },
+        zero_rad: from.zero_rad + step[ZERO],
     }
-    let n = scores[0].len();
-    let bandwidth = 1.1447 * (4.0 * above / below * n as f64).cbrt();
-    let last = (bandwidth as usize).min(n / 4);
-    let mut sum = vec![vec![0.0; scores.len()]; scores.len()];
-    for lag in 0..=last {
-        let share = if lag == 0 { 0.5 } else { 1.0 };
-        let weight = share * (1.0 - lag as f64 / (last + 1) as f64);
-        for (i, a) in scores.iter().enumerate() {
-            for (j, b) in scores.iter().enumerate() {
-                let ahead = weight * lagged(a, b, lag);
-                sum[i][j] += ahead;
-                sum[j][i] += ahead;
-            }
-        }
-    }
-    sum
-}
-
-fn moved(from: (Decay, f64), step: &[f64; N_UNKNOWNS], share: f64) -> (Decay, f64) {
-    let mut values = from.0.parameters();
-    for (value, step) in values.iter_mut().zip(step) {
-        *value += share * step;
-    }
-    (Decay::from_parameters(values), from.1 + share * step[OFFSET])
 }

@@ -1,13 +1,16 @@
 //! Energy lost from peak to peak, without any law of damping.
 
+use super::moment::MotionPosterior;
 use crate::inverse::estimate::Estimate;
 use crate::inverse::identification::HalfCycle;
-use crate::inverse::state_space::posterior::StatePosterior;
 
 /// A peak of the smoothed roll about its zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Peak {
+    /// The sample after it.
     sample: usize,
+    /// Where it stands between the sample before and that one [-].
+    share: f64,
     time_s: f64,
     amplitude_rad: f64,
     sd_rad: f64,
@@ -20,8 +23,6 @@ pub struct Restoring {
     pub natural_frequency_rad_s: f64,
     /// Cubic part `k3` [1/rad2].
     pub cubic_per_rad2: f64,
-    /// Roll at rest [rad].
-    pub zero_rad: f64,
 }
 
 impl Restoring {
@@ -40,16 +41,16 @@ impl Restoring {
 pub fn half_cycles(
     origin_s: f64,
     time_s: &[f64],
-    states: &StatePosterior,
+    motion: &MotionPosterior,
     restoring: &Restoring,
 ) -> Vec<HalfCycle> {
-    let peaks = peaks(time_s, states, restoring);
+    let peaks = peaks(time_s, motion, restoring);
     peaks
         .windows(2)
         .filter(|pair| pair[0].amplitude_rad * pair[1].amplitude_rad < 0.0)
         .map(|pair| {
             let (first, last) = (&pair[0], &pair[1]);
-            let balance = balance(time_s, states, restoring, first, last);
+            let balance = balance(time_s, motion, restoring, first, last);
             let span_s = last.time_s - first.time_s;
             HalfCycle {
                 time_s: origin_s + 0.5 * (first.time_s + last.time_s),
@@ -103,25 +104,21 @@ pub fn local_damping(half_cycles: &[HalfCycle], amplitude_rad: f64, b3_s: f64) -
     Some(Estimate::normal(mean, (outer + scatter).sqrt()))
 }
 
-fn peaks(time_s: &[f64], states: &StatePosterior, restoring: &Restoring) -> Vec<Peak> {
-    let (frequency_rad_s, zero_rad) = (restoring.natural_frequency_rad_s, restoring.zero_rad);
+fn peaks(time_s: &[f64], motion: &MotionPosterior, restoring: &Restoring) -> Vec<Peak> {
     let mut peaks: Vec<Peak> = Vec::new();
     for i in 1..time_s.len() {
-        let (before, after) = (states.mean[i - 1][1], states.mean[i][1]);
+        let (before, after) = (motion.mean[i - 1][1], motion.mean[i][1]);
         if before * after > 0.0 || (before - after).abs() < f64::MIN_POSITIVE {
             continue;
         }
-        let share = before / (before - after);
-        let between = |a: f64, b: f64| a + share * (b - a);
-        // The rate falls evenly to zero on the way to the peak.
-        let tau = frequency_rad_s * (time_s[i] - time_s[i - 1]);
-        let roll = states.mean[i - 1][0] + 0.5 * before * share * tau;
-        let sd = between(states.sd[i - 1][0], states.sd[i][0]);
+        let swing = Swing::new(time_s, motion, restoring, i);
+        let share = swing.turning_share();
         let peak = Peak {
             sample: i,
-            time_s: between(time_s[i - 1], time_s[i]),
-            amplitude_rad: roll - zero_rad,
-            sd_rad: sd,
+            share,
+            time_s: time_s[i - 1] + share * swing.width_s,
+            amplitude_rad: swing.roll_rad(share),
+            sd_rad: motion.sd[i - 1][0] + share * (motion.sd[i][0] - motion.sd[i - 1][0]),
         };
         // A wiggle on one side of the zero is not a new peak; the larger one stands.
         match peaks.last_mut() {
@@ -139,23 +136,82 @@ fn peaks(time_s: &[f64], states: &StatePosterior, restoring: &Restoring) -> Vec<
 
 fn balance(
     time_s: &[f64],
-    states: &StatePosterior,
+    motion: &MotionPosterior,
     restoring: &Restoring,
     first: &Peak,
     last: &Peak,
 ) -> Estimate {
-    let w2 = restoring.natural_frequency_rad_s.powi(2);
-    let rate2 = |i: usize| w2 * states.mean[i][1].powi(2);
-    // The rate is zero at both peaks, so the cut intervals beside them are triangles.
     let mut kinetic = 0.0;
-    let inner = first.sample..last.sample;
-    for i in inner.clone().skip(1) {
-        kinetic += 0.5 * (rate2(i - 1) + rate2(i)) * (time_s[i] - time_s[i - 1]);
+    for i in first.sample..=last.sample {
+        let from = if i == first.sample { first.share } else { 0.0 };
+        let to = if i == last.sample { last.share } else { 1.0 };
+        kinetic += Swing::new(time_s, motion, restoring, i).squared_rate(from, to);
     }
-    kinetic += rate2(first.sample) * (time_s[first.sample] - first.time_s) / 3.0;
-    kinetic += rate2(last.sample - 1) * (last.time_s - time_s[last.sample - 1]) / 3.0;
     let (start, start_slope) = restoring.potential(first.amplitude_rad.abs());
     let (end, end_slope) = restoring.potential(last.amplitude_rad.abs());
     let sd = (start_slope * first.sd_rad).hypot(end_slope * last.sd_rad);
     Estimate::normal((start - end) / kinetic, sd / kinetic)
+}
+
+/// The motion from one sample to the next: the rate a cubic through its values and slopes.
+struct Swing {
+    width_s: f64,
+    roll_rad: f64,
+    /// Coefficients of the rate [rad/s] over the share of the interval, the constant first.
+    rate: [f64; 4],
+}
+
+impl Swing {
+    /// The motion that leads to sample `to`.
+    fn new(time_s: &[f64], motion: &MotionPosterior, restoring: &Restoring, to: usize) -> Self {
+        let width_s = time_s[to] - time_s[to - 1];
+        let w2 = restoring.natural_frequency_rad_s.powi(2);
+        let slope = |i: usize| width_s * (motion.mean[i][2] - w2 * motion.mean[i][0]);
+        let (start, end) = (motion.mean[to - 1][1], motion.mean[to][1]);
+        let (leaving, arriving) = (slope(to - 1), slope(to));
+        let rise = end - start;
+        let rate = [
+            start,
+            leaving,
+            3.0 * rise - 2.0 * leaving - arriving,
+            leaving + arriving - 2.0 * rise,
+        ];
+        Self { width_s, roll_rad: motion.mean[to - 1][0], rate }
+    }
+
+    fn rate_rad_per_s(&self, share: f64) -> f64 {
+        self.rate.iter().rev().fold(0.0, |sum, c| sum * share + c)
+    }
+
+    fn roll_rad(&self, share: f64) -> f64 {
+        let terms = self.rate.iter().zip(1..).map(|(c, n)| c * share.powi(n) / f64::from(n));
+        self.roll_rad + self.width_s * terms.sum::<f64>()
+    }
+
+    /// Where the rate changes its sign.
+    fn turning_share(&self) -> f64 {
+        let (mut low, mut high) = (0.0, 1.0);
+        let start = self.rate[0];
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if self.rate_rad_per_s(middle) * start > 0.0 { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    }
+
+    /// Integral of the squared rate [rad2/s] between two shares of the interval.
+    fn squared_rate(&self, from: f64, to: f64) -> f64 {
+        // Gauss's rule of four points is exact for the square of a cubic.
+        const NODES: [(f64, f64); 4] = [
+            (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+            (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+            (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+            (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+        ];
+        let sum: f64 = NODES
+            .iter()
+            .map(|(node, weight)| weight * self.rate_rad_per_s(from + node * (to - from)).powi(2))
+            .sum();
+        sum * (to - from) * self.width_s
+    }
 }

@@ -1,73 +1,118 @@
 //! One decay, from its samples to everything that they say.
 
+mod beliefs;
+pub mod curve;
+pub mod disturbance;
+pub mod equivalent;
 pub mod fit;
+pub mod form;
 pub mod half_cycles;
-mod law;
-mod misfit;
+pub mod moment;
+pub mod posterior;
+mod remarks;
+mod search;
+pub mod solution;
 mod start;
 
-use self::fit::{DecayPosterior, K3, N_UNKNOWNS, OFFSET};
+use self::disturbance::Columns;
+use self::equivalent::equivalent_damping;
+use self::fit::{CUBIC_RESTORING, FREQUENCY, Linearised, Point, RATE, ROLL, ZERO, settle};
+use self::form::{CUBIC, FORMS};
 use self::half_cycles::Restoring;
-use self::law::{Law, equivalent_damping};
+use self::moment::MotionPosterior;
+use self::posterior::DecayPosterior;
 use self::start::first_guess;
 use crate::inverse::Setting;
 use crate::inverse::estimate::Estimate;
-use crate::inverse::identification::{DampingFit, Identification, MomentHistory, Resimulation};
+use crate::inverse::identification::{
+    DampingFit, Identification, Method, MomentHistory, Resimulation,
+};
 use crate::inverse::mixture;
 use crate::inverse::observed::Observed;
 use crate::inverse::record::Record;
-use crate::inverse::state_space::history::{Reference, state_posterior};
 use crate::run::{Run, RunKind};
+
+/// Samples per roll period that the posterior is computed from; a mean over more of them is as
+/// good as they are, for what it does to the roll is part of the model.
+const SAMPLES_PER_PERIOD: f64 = 20.0;
+
+/// A decay with its posterior.
+pub struct Solved {
+    /// The roll as it is shown.
+    pub record: Record,
+    /// The roll as the posterior sees it.
+    pub thinned: Record,
+    /// The least-squares decay with linear restoring, on the thinned record.
+    pub linear: Point,
+    /// The posterior.
+    pub posterior: DecayPosterior,
+}
+
+/// Solves the inverse problem of a decay.
+///
+/// # Errors
+/// The reason, as a sentence with its values, why the decay cannot be identified.
+pub fn solve(run: &Run) -> Result<Solved, String> {
+    let record = Record::new(&run.roll)?;
+    let thinned = record.per_period(SAMPLES_PER_PERIOD);
+    let cubic = FORMS[CUBIC].powers;
+    let linear = settle(&thinned, first_guess(&thinned, run), cubic, false)?;
+    let best = settle(&thinned, linear, cubic, true)?;
+    let mut posterior = posterior(&thinned, best);
+    // A law of another form is linearised where it fits best itself.
+    let favoured = posterior.solutions[0].form;
+    if favoured != CUBIC {
+        let powers = FORMS[favoured].powers;
+        let best =
+            settle(&thinned, best, if powers.is_empty() { &[1, 2, 3] } else { powers }, true)?;
+        posterior = self::posterior(&thinned, best);
+    }
+    Ok(Solved { record, thinned, linear, posterior })
+}
+
+/// The posterior about a least-squares point.
+fn posterior(record: &Record, point: Point) -> DecayPosterior {
+    let linearised = Linearised::new(record, point);
+    let columns = Columns::new(record, &linearised);
+    let quantum_rad = record.quantum_rad.unwrap_or(0.0);
+    let floor_rad2 = quantum_rad * quantum_rad / (12.0 * record.n_averaged as f64);
+    DecayPosterior::new(linearised, columns, floor_rad2)
+}
 
 /// Identifies a decay.
 pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, String> {
-    let record = Record::new(&run.roll)?;
-    let (start, offset_rad) = first_guess(&record, run);
-    let fit = fit::fit(&record, start, offset_rad)?;
-    let unknown = |position| mixture::estimate(&fit.unknown(position));
-    let frequency = unknown(2);
-    let zero = unknown(OFFSET);
-    let tau = record.scaled_time(frequency.mean);
-    let ordered = state_posterior(&tau, &record.roll_rad, 0.0);
+    let solved = solve(run)?;
+    let Solved { record, thinned, linear, posterior } = &solved;
+    let unknown = |position| mixture::estimate(&posterior.unknown(position));
+    let (frequency, zero) = (unknown(FREQUENCY), unknown(ZERO));
+    let initial = (unknown(ROLL), unknown(RATE));
+    let motion = moment::motion(posterior);
     let restoring = Restoring {
         natural_frequency_rad_s: frequency.mean,
-        cubic_per_rad2: unknown(K3).mean,
-        zero_rad: zero.mean,
+        cubic_per_rad2: unknown(CUBIC_RESTORING).mean,
     };
-    let cycles =
-        half_cycles::half_cycles(record.origin_s, &record.time_s, &ordered.states, &restoring);
+    let cycles = half_cycles::half_cycles(thinned.origin_s, &thinned.time_s, &motion, &restoring);
     if cycles.len() < 3 {
         return Err(format!("{} half cycles stand clear of the noise, 3 are needed", cycles.len()));
     }
-    let law = Law::new(&fit, &cycles);
-    let reference = Reference {
-        natural_frequency_rad_s: frequency.mean,
-        natural_frequency_sd_rad_s: frequency.sd,
-        zero_rad: zero.mean,
-        zero_sd_rad: zero.sd,
-    };
-    let initial = (unknown(0), unknown(1));
-    let observed = Observed {
-        record: &record,
+    let observed = |record| Observed {
+        record,
         natural_frequency_rad_s: frequency.mean,
         zero_rad: zero.mean,
         start: (initial.0.mean, initial.1.mean),
         drive: None,
     };
-    let moment = MomentHistory::of_decay(&record, &ordered.states, &reference);
-    let mut told = observed.tell(moment, setting)?;
-    let mut remarks = remarks(&fit, ordered.order, &law);
+    let exact = history(thinned, &motion);
+    let mut told = match setting.method {
+        Method::Exact => observed(thinned).tell(exact, setting)?,
+        Method::PaperMcmc => observed(record).tell(exact, setting)?,
+    };
+    let mut remarks = remarks::remarks(posterior);
     remarks.append(&mut told.remarks);
     // The paper fits its law to its own scatter of moments.
-    let damping = told.scatter_fit.unwrap_or_else(|| law.damping());
-    let equivalent = |cubic_weight: f64| match told.scatter_fit {
-        Some(fit) => fit.combination(1.0, cubic_weight),
-        None => law.combination(1.0, cubic_weight),
-    };
-    let largest_rad = told.moment.roll_rad.iter().map(|roll| roll.abs()).fold(0.0, f64::max);
+    let damping = told.scatter_fit.unwrap_or_else(|| damping(posterior));
+    let scatter_fit = told.scatter_fit.as_ref();
     let b3_s = damping.b3_s.mean;
-    let equivalent_damping =
-        equivalent_damping(equivalent, b3_s, &cycles, largest_rad, frequency.mean);
     Ok(Identification {
         kind: RunKind::Decay,
         method: setting.method,
@@ -75,15 +120,20 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
         initial_roll_rad: initial.0,
         initial_roll_rate_rad_per_s: initial.1,
         roll_offset_rad: zero,
-        roll_noise_rad: Estimate::normal(
-            ordered.states.noise_sd_rad,
-            ordered.states.noise_sd_rad / (2.0 * record.roll_rad.len() as f64).sqrt(),
-        ),
+        roll_noise_rad: noise(posterior, thinned),
         damping,
-        equivalent_damping,
+        equivalent_damping: equivalent_damping(
+            posterior,
+            scatter_fit,
+            frequency.mean,
+            b3_s,
+            &cycles,
+        ),
         half_cycles: cycles,
+        damping_curve: beliefs::damping_curve(posterior),
+        beliefs: Some(beliefs::beliefs(posterior, thinned)),
         moment: told.moment,
-        resimulation: resimulation(&record, &fit, told.scatter_fit.as_ref()),
+        resimulation: resimulation(record, thinned, linear, scatter_fit),
         inertia_kg_m2: None,
         forced: None,
         least_squares_per_s2: told.least_squares_per_s2,
@@ -92,51 +142,65 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
     })
 }
 
+/// The two coefficients of the law of Sec. 4.1.
+fn damping(posterior: &DecayPosterior) -> DampingFit {
+    let combination = |a: f64, c: f64| mixture::estimate(&posterior.cubic_law(a, c));
+    let (b1_per_s, b3_s) = (combination(1.0, 0.0), combination(0.0, 1.0));
+    // Scaled to unit deviations, the variance of the sum is 2 + 2 correlation.
+    let sum = combination(b1_per_s.sd.recip(), b3_s.sd.recip());
+    let correlation = (0.5 * sum.sd.powi(2) - 1.0).clamp(-1.0, 1.0);
+    DampingFit { b1_per_s, b3_s, correlation }
+}
+
+/// Standard deviation of the noise of one recorded sample [rad].
+fn noise(posterior: &DecayPosterior, record: &Record) -> Estimate {
+    let averaged = (record.n_averaged as f64).sqrt();
+    let components: Vec<_> = posterior
+        .solutions
+        .iter()
+        .map(|w| {
+            let mean = w.solution.noise_variance_rad2().sqrt() * averaged;
+            let sd = mean / (4.0 * w.solution.shape).sqrt();
+            mixture::Component { weight: w.weight(), mean, sd }
+        })
+        .collect();
+    mixture::estimate(&components)
+}
+
+/// The moment history of a decay with the motion beside it.
+fn history(record: &Record, motion: &MotionPosterior) -> MomentHistory {
+    let mut history = MomentHistory {
+        time_s: record.time_s.iter().map(|t| record.origin_s + t).collect(),
+        ..MomentHistory::default()
+    };
+    for (mean, sd) in motion.mean.iter().zip(&motion.sd) {
+        let band = Estimate::normal(mean[2], sd[2]);
+        history.roll_rad.push(mean[0]);
+        history.roll_rate_rad_per_s.push(mean[1]);
+        history.mean_per_s2.push(band.mean);
+        history.sd_per_s2.push(band.sd);
+        history.lo95_per_s2.push(band.lo95);
+        history.hi95_per_s2.push(band.hi95);
+    }
+    history
+}
+
 /// The run simulated with linear restoring and its law, as in the paper's Fig. 13.
 ///
 /// The law is that of least squares, or that of the chain's scatter where there is one.
 fn resimulation(
     record: &Record,
-    fit: &DecayPosterior,
+    thinned: &Record,
+    linear: &Point,
     scatter_fit: Option<&DampingFit>,
 ) -> Resimulation {
-    let (mut decay, offset_rad) = fit.linear;
+    let mut decay = linear.decay;
     if let Some(law) = scatter_fit {
         (decay.b1_per_s, decay.b3_s) = (law.b1_per_s.mean, law.b3_s.mean);
     }
-    let motion = decay.solve(&record.time_s);
-    record.resimulation(motion.iter().map(|m| m.roll_rad + offset_rad).collect())
-}
-
-fn remarks(fit: &DecayPosterior, order: usize, law: &Law<'_>) -> Vec<String> {
-    let mut remarks = vec![format!("the evidence favours a moment prior of order {order}")];
-    let cubic = fit.probability_of_cubic_restoring();
-    let k3 = mixture::estimate(&fit.unknown(K3));
-    let rms_deg = |residual: &[f64]| {
-        let square: f64 = residual.iter().map(|r| r * r).sum();
-        (square / residual.len() as f64).sqrt().to_degrees()
-    };
-    if cubic > 0.95 {
-        let mut weights = [0.0; N_UNKNOWNS];
-        weights[2] = 1.0;
-        let small = mixture::estimate(&fit.combination(&weights)).mean;
-        let at_ten = small * (1.0 + 0.375 * k3.mean * 10_f64.to_radians().powi(2));
-        let best = fit.solutions.iter().find(|s| s.cubic_restoring);
-        let left = best.map_or(0.0, |s| rms_deg(&s.residual_rad));
-        remarks.push(format!(
-            "linear restoring does not capture that the frequency changes with amplitude, from \
-             {small:.3} rad/s at small angles to {at_ten:.3} rad/s at 10 deg: a restoring moment \
-             K (phi + k3 phi^3) with k3 = {:.2} [{:.2}, {:.2}] 1/rad2 leaves {left:.3} deg rms",
-            k3.mean, k3.lo95, k3.hi95
-        ));
-    }
-    let misfit: f64 = fit.solutions.iter().map(|s| s.weight * s.probability_of_misfit).sum();
-    if misfit > 0.5 {
-        let (b1_per_s, b3_s) = law.misfit_sd();
-        remarks.push(format!(
-            "b1 phi' + b3 phi'^3 leaves more than noise; the half cycles' scatter about it widens \
-             the standard deviations of b1 and b3 by {b1_per_s:.4} 1/s and {b3_s:.4} s"
-        ));
-    }
-    remarks
+    // The thinned record starts in the middle of its first block.
+    let later_s = thinned.origin_s - record.origin_s;
+    let time_s: Vec<f64> = record.time_s.iter().map(|t| t - later_s).collect();
+    let motion = decay.motion(&time_s);
+    record.resimulation(motion.iter().map(|m| m.roll_rad + linear.zero_rad).collect())
 }

@@ -1,5 +1,6 @@
 //! Where the fit of a decay starts from.
 
+use super::fit::Point;
 use crate::inverse::record::Record;
 use crate::roll::damping::cubic_weight;
 use crate::roll::equation::Decay;
@@ -7,7 +8,7 @@ use crate::run::Run;
 
 /// A starting point for the fit: zero from the middle of the record, damping from how soon the
 /// roll has fallen to a third.
-pub(super) fn first_guess(record: &Record, run: &Run) -> (Decay, f64) {
+pub(super) fn first_guess(record: &Record, run: &Run) -> Point {
     let w = record.rough_frequency_rad_s;
     let period_s = std::f64::consts::TAU / w;
     // The last whole periods swing about the zero; the still stretch knows it where there is one.
@@ -37,8 +38,9 @@ pub(super) fn first_guess(record: &Record, run: &Run) -> (Decay, f64) {
         initial_roll_rate_rad_per_s: (record.roll_rad[1] - record.roll_rad[0]) / record.time_s[1],
         natural_frequency_rad_s: w,
         b1_per_s: 0.7 * equivalent,
+        b2: 0.0,
         b3_s: 0.3 * equivalent / cubic_weight(w, largest),
         restoring_cubic_per_rad2: 0.0,
     };
-    (decay, zero)
+    Point { decay, zero_rad: zero }
 }

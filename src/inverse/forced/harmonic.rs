@@ -1,8 +1,7 @@
 //! A periodic record as a Fourier series whose frequency is unknown too.
 
 use crate::inverse::estimate::Estimate;
-use crate::inverse::state_space::filter::Triangle;
-use crate::inverse::state_space::smoother::explained_by;
+use crate::inverse::state_space::triangle::Triangle;
 
 /// Harmonics that are kept: the fundamental, and what asymmetry and a cubic law add.
 const N_HARMONICS: usize = 3;
@@ -120,9 +119,10 @@ fn linear_fit(time_s: &[f64], value: &[f64], frequency: f64) -> (Vec<f64>, Trian
         let mut line = [0.0; N_COEFFICIENTS + 1];
         line[..N_COEFFICIENTS].copy_from_slice(&row(t, frequency));
         line[N_COEFFICIENTS] = v;
-        triangle.add(&mut line);
+        triangle.push(line);
     }
-    let weights = explained_by(&triangle, N_COEFFICIENTS, N_COEFFICIENTS);
+    triangle.settle();
+    let weights = triangle.explained_by(N_COEFFICIENTS, N_COEFFICIENTS);
     (weights.iter().map(|w| -w).collect(), triangle)
 }
 
@@ -153,9 +153,10 @@ fn refine(
         // A change of frequency stretches time: its derivative is the rate times t / w.
         line[n - 1] = motion.rate * t / frequency;
         line[n] = v - motion.value;
-        triangle.add(&mut line);
+        triangle.push(line);
     }
-    let step = -explained_by(&triangle, n, n)[n - 1];
+    triangle.settle();
+    let step = -triangle.explained_by(n, n)[n - 1];
     let freedom = time_s.len() as f64 - n as f64;
     series.noise_sd = triangle.at(n, n).abs() / freedom.sqrt();
     series.coefficient_sd = series.noise_sd * (2.0 / time_s.len() as f64).sqrt();

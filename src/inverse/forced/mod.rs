@@ -84,6 +84,8 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
         ),
         equivalent_damping: equivalent_damping(&response),
         half_cycles: Vec::new(),
+        damping_curve: Vec::new(),
+        beliefs: None,
         moment: told.moment,
         resimulation: drive.resimulation(&record, &damping, &reference, start),
         inertia_kg_m2: Some(inertia),

@@ -5,8 +5,7 @@ use std::ops::Range;
 use super::harmonic::{FourierSeries, Motion};
 use super::steady;
 use crate::inverse::estimate::Estimate;
-use crate::inverse::state_space::filter::Triangle;
-use crate::inverse::state_space::smoother::explained_by;
+use crate::inverse::state_space::triangle::Triangle;
 use crate::roll::exciting_moment::Exciter;
 use crate::run::Run;
 
@@ -132,9 +131,10 @@ impl Balance {
             let motion = roll.at(t);
             let left = moment - restoring * (motion.value - roll.mean);
             let [acceleration, rate, cubed, one] = row(&motion);
-            triangle.add(&mut [acceleration, rate, cubed, one, left]);
+            triangle.push([acceleration, rate, cubed, one, left]);
         }
-        let values: Vec<f64> = explained_by(&triangle, N, N).iter().map(|w| -w).collect();
+        triangle.settle();
+        let values: Vec<f64> = triangle.explained_by(N, N).iter().map(|w| -w).collect();
         let freedom = (time_s.len() - N) as f64;
         let noise_n_m = triangle.at(N, N).abs() / freedom.sqrt();
         let mut covariance = [[0.0; N]; N];
@@ -163,11 +163,11 @@ impl Balance {
                 let error = unit.at(t);
                 restoring * error.value + values[0] * error.acceleration + slope * error.rate
             };
-            let mut line: Vec<f64> =
-                row(&motion).into_iter().chain(units.iter().map(moment)).collect();
-            triangle.add(&mut line);
+            let line: Vec<f64> = row(&motion).into_iter().chain(units.iter().map(moment)).collect();
+            triangle.push(line);
         }
-        (0..units.len()).map(|u| explained_by(&triangle, N, N + u)).collect()
+        triangle.settle();
+        (0..units.len()).map(|u| triangle.explained_by(N, N + u)).collect()
     }
 
     fn response(&self, roll: FourierSeries, moment: FourierSeries) -> SteadyResponse {

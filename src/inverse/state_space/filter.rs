@@ -8,6 +8,7 @@
 
 use super::matrix::{Matrix, apply, triangular_root};
 use super::transition::{Step, Transition};
+use super::triangle::Triangle;
 
 /// One column that the filter whitens.
 #[derive(Debug, Clone, Copy)]
@@ -19,16 +20,65 @@ pub enum Column<'a> {
 }
 
 /// What the filter knew before each sample, kept for the smoother.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Trail<const N: usize> {
-    /// The step that led to the sample (the first one is not used).
-    pub steps: Vec<Step<N>>,
-    /// Triangular root of the predicted covariance.
-    pub roots: Vec<Matrix<N>>,
+    /// The step that led to each sample (the first one is not used).
+    pub steps: Kept<Step<N>>,
+    /// Triangular root of the predicted covariance at each sample.
+    pub roots: Kept<Matrix<N>>,
     /// Predicted state, sample by sample, `n_columns` each.
     pub states: Vec<[f64; N]>,
     /// Innovation, sample by sample, `n_columns` each.
     pub innovations: Vec<f64>,
+}
+
+impl<const N: usize> Default for Trail<N> {
+    fn default() -> Self {
+        Self {
+            steps: Kept::default(),
+            roots: Kept::default(),
+            states: Vec::new(),
+            innovations: Vec::new(),
+        }
+    }
+}
+
+/// One value a sample, those that repeat kept once: gains that have settled cost no memory.
+#[derive(Debug, Clone)]
+pub struct Kept<T> {
+    values: Vec<T>,
+    place: Vec<u32>,
+}
+
+impl<T> Default for Kept<T> {
+    fn default() -> Self {
+        Self { values: Vec::new(), place: Vec::new() }
+    }
+}
+
+impl<T: Copy> Kept<T> {
+    /// Appends a value; `again` tells that it is the last one.
+    fn push(&mut self, value: T, again: bool) {
+        if !again || self.values.is_empty() {
+            self.values.push(value);
+        }
+        self.place.push((self.values.len() - 1) as u32);
+    }
+
+    /// The value of a sample.
+    pub fn at(&self, sample: usize) -> &T {
+        &self.values[self.place[sample] as usize]
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.place.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.place.is_empty()
+    }
 }
 
 /// The whitened columns, reduced to a triangle.
@@ -52,22 +102,22 @@ pub fn filter<const N: usize>(
     let mut states: Vec<[f64; N]> = columns.iter().map(Column::start).collect();
     let mut triangle = Triangle::new(columns.len());
     let mut whitened = vec![0.0; columns.len()];
-    let mut root = [[0.0; N]; N];
-    let mut predicted = root;
+    let mut predicted = prior.start();
+    let mut root = predicted;
     let mut log_determinant = 0.0;
-    let mut last: Option<(f64, Step<N>)> = None;
+    let mut step = Step { f: [[0.0; N]; N], g: [[0.0; N]; N] };
+    let mut width = f64::NAN;
     let mut settled = false;
     for (i, &now) in tau.iter().enumerate() {
+        let mut same_step = true;
         if i > 0 {
-            let width = now - tau[i - 1];
-            let step = match last {
-                Some((known, step)) if known.to_bits() == width.to_bits() => step,
-                _ => {
-                    settled = false;
-                    prior.step(width)
-                }
-            };
-            last = Some((width, step));
+            let before = width;
+            width = now - tau[i - 1];
+            same_step = prior.is_even() && before.to_bits() == width.to_bits();
+            if !same_step {
+                settled = false;
+                step = prior.step(i, width);
+            }
             for state in &mut states {
                 *state = apply(&step.f, state);
             }
@@ -86,19 +136,18 @@ pub fn filter<const N: usize>(
             *out = column.at(i) - state[0];
         }
         if let Some(trail) = trail.as_deref_mut() {
-            trail.roots.push(predicted);
-            trail.steps.push(last.map_or(Step { f: [[0.0; N]; N], g: [[0.0; N]; N] }, |l| l.1));
+            trail.roots.push(predicted, settled);
+            trail.steps.push(step, same_step);
             trail.states.extend_from_slice(&states);
             trail.innovations.extend_from_slice(&whitened);
         }
-        for (state, innovation) in states.iter_mut().zip(&mut whitened) {
-            let pull = reach / variance * *innovation;
+        for (state, innovation) in states.iter_mut().zip(&whitened) {
+            let pull = reach / variance * innovation;
             for (x, row) in state.iter_mut().zip(&predicted) {
                 *x += row[0] * pull;
             }
-            *innovation /= deviation;
         }
-        triangle.add(&mut whitened);
+        triangle.push(whitened.iter().map(|innovation| innovation / deviation));
         if !settled {
             root = predicted;
             for row in &mut root {
@@ -106,6 +155,7 @@ pub fn filter<const N: usize>(
             }
         }
     }
+    triangle.settle();
     Filtered { log_determinant, n_samples: tau.len(), triangle }
 }
 
@@ -143,51 +193,4 @@ fn spread<const N: usize>(step: &Step<N>, root: &Matrix<N>) -> Matrix<N> {
 fn same<const N: usize>(a: &Matrix<N>, b: &Matrix<N>) -> bool {
     // A relative change of 1e-13 a step is rounding: the filter forgets within a few periods.
     a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() <= 1e-13 * b.abs())
-}
-
-/// The upper triangle of a tall matrix, grown row by row with plane rotations.
-#[derive(Debug, Clone)]
-pub struct Triangle {
-    size: usize,
-    entries: Vec<f64>,
-}
-
-impl Triangle {
-    /// The triangle of a matrix of `size` columns without rows.
-    pub fn new(size: usize) -> Self {
-        Self { size, entries: vec![0.0; size * size] }
-    }
-
-    /// Entry of row `i`, column `j`.
-    pub fn at(&self, i: usize, j: usize) -> f64 {
-        self.entries[i * self.size + j]
-    }
-
-    /// Columns of the inverse of the leading `count` by `count` triangle.
-    pub fn inverse_columns(&self, count: usize) -> Vec<Vec<f64>> {
-        let mut columns = vec![vec![0.0; count]; count];
-        for (c, column) in columns.iter_mut().enumerate() {
-            for i in (0..=c).rev() {
-                let unit = f64::from(u8::from(i == c));
-                let known: f64 = (i + 1..=c).map(|j| self.at(i, j) * column[j]).sum();
-                column[i] = (unit - known) / self.at(i, i);
-            }
-        }
-        columns
-    }
-
-    /// Adds a row, which is used up.
-    pub fn add(&mut self, row: &mut [f64]) {
-        for i in 0..self.size {
-            if row[i] == 0.0 {
-                continue;
-            }
-            let entries = &mut self.entries[i * self.size + i..(i + 1) * self.size];
-            let radius = entries[0].hypot(row[i]);
-            let (cos, sin) = (entries[0] / radius, row[i] / radius);
-            for (entry, value) in entries.iter_mut().zip(&mut row[i..]) {
-                (*entry, *value) = (cos * *entry + sin * *value, cos * *value - sin * *entry);
-            }
-        }
-    }
 }

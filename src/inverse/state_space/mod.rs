@@ -4,9 +4,12 @@
 //! [`smoother`] runs back, [`posterior`] integrates over smoothness and noise, and [`history`]
 //! turns the states into the moment `U` with its band.
 
+pub mod coloured;
 pub mod filter;
 pub mod history;
+pub mod matern;
 pub mod matrix;
 pub mod posterior;
 pub mod smoother;
 pub mod transition;
+pub mod triangle;

@@ -83,7 +83,8 @@ impl<F> MomentProblem<'_, F> {
         let top = nodes.iter().map(|n| n.log_weight).fold(f64::NEG_INFINITY, f64::max);
         let spacing = nodes.get(1).map_or(1.0, |n| n.log_intensity - nodes[0].log_intensity);
         let total: f64 = nodes.iter().map(|n| (n.log_weight - top).exp()).sum();
-        let flat = self.flat();
+        let columns = self.columns();
+        let n_flat = columns.len() - 1;
         let mut mean = vec![[0.0; 3]; self.tau.len()];
         let mut second = mean.clone();
         let mut noise_variance = 0.0;
@@ -91,12 +92,15 @@ impl<F> MomentProblem<'_, F> {
             let share = (node.log_weight - top).exp() / total;
             noise_variance += share * node.noise_variance;
             let prior = (self.prior)(node.log_intensity.exp());
-            let (_, smoothed) = smooth(&prior, self.tau, &flat, &[self.record]);
-            let states = smoothed.means[0].iter().zip(&smoothed.variances);
-            for ((mean, second), (m, v)) in mean.iter_mut().zip(&mut second).zip(states) {
+            let (filtered, smoothed) = smooth(&prior, self.tau, &columns);
+            let weights = filtered.triangle.explained_by(n_flat, n_flat);
+            let inverse = filtered.triangle.inverse_columns(n_flat);
+            for (i, (mean, second)) in mean.iter_mut().zip(&mut second).enumerate() {
                 for k in 0..3 {
-                    mean[k] += share * m[k];
-                    second[k] += share * (v[k] * node.noise_variance + m[k] * m[k]);
+                    let m = smoothed.mean(i, k, &weights);
+                    let v = smoothed.variance(i, k, &inverse) * node.noise_variance;
+                    mean[k] += share * m;
+                    second[k] += share * (v + m * m);
                 }
             }
         }
@@ -114,8 +118,10 @@ impl<F> MomentProblem<'_, F> {
         }
     }
 
-    fn flat(&self) -> Vec<Column<'static>> {
-        self.free_components.iter().map(|&c| Column::InitialState(c)).collect()
+    /// The flat columns, then the record.
+    fn columns(&self) -> Vec<Column<'_>> {
+        let free = self.free_components.iter().map(|&c| Column::InitialState(c));
+        free.chain([Column::Record(self.record)]).collect()
     }
 
     /// Nodes around the mode, evenly spaced, that hold all but a millionth of the weight.
@@ -155,8 +161,7 @@ impl<F> MomentProblem<'_, F> {
         F: Fn(f64) -> T,
     {
         let prior = (self.prior)(log_intensity.exp());
-        let free = self.free_components.iter().map(|&c| Column::InitialState(c));
-        let columns: Vec<Column<'_>> = free.chain([Column::Record(self.record)]).collect();
+        let columns = self.columns();
         let filtered = filter(&prior, self.tau, &columns, None);
         self.weigh(log_intensity, &filtered, columns.len() - 1)
     }

@@ -17,8 +17,23 @@ pub struct Step<const N: usize> {
 
 /// A prior of the unknown moment, as the motion of an `N`-component state.
 pub trait Transition<const N: usize> {
-    /// The step over a scaled time `tau` [-].
-    fn step(&self, tau: f64) -> Step<N>;
+    /// The step over a scaled time `tau` [-] that leads to sample number `to`.
+    fn step(&self, to: usize, tau: f64) -> Step<N>;
+
+    /// Whether steps of one width are alike, so that gains that have settled can be kept.
+    fn is_even(&self) -> bool {
+        true
+    }
+
+    /// Triangular root of what is not known of the state before the first sample.
+    fn start(&self) -> Matrix<N> {
+        [[0.0; N]; N]
+    }
+
+    /// Where roll, rate and moment stand in the state.
+    fn places(&self) -> [usize; 3] {
+        [0, 1, 2]
+    }
 }
 
 /// The moment's `N - 2`-th derivative is a white noise: a random walk, its integral, and so on.
@@ -47,25 +62,44 @@ const NODES: [(f64, f64); 8] = [
 ];
 
 impl<const N: usize> Transition<N> for IntegratedWiener {
-    fn step(&self, tau: f64) -> Step<N> {
-        let flow = |tau: f64| {
-            let mut a = [[0.0; N]; N];
-            a[0][1] = tau;
-            a[1][0] = -tau;
-            for i in 2..N {
-                a[i - 1][i] = tau;
+    fn step(&self, _to: usize, tau: f64) -> Step<N> {
+        let drift = oscillator_driven_by(|a| {
+            for i in 2..N - 1 {
+                a[i][i + 1] = 1.0;
             }
-            exponential(&a)
-        };
-        let mut columns = [[0.0; N]; 16];
-        for (pair, (node, weight)) in columns.chunks_exact_mut(2).zip(NODES) {
-            let reached = flow(tau * (1.0 - node));
-            let root = (weight * tau).sqrt();
-            pair[0] = std::array::from_fn(|i| reached[i][N - 1] * root * self.intensity);
-            pair[1] = std::array::from_fn(|i| reached[i][1] * root * self.moment_noise);
-        }
-        Step { f: flow(tau), g: triangular_root(&mut columns) }
+        });
+        integrated(&drift, tau, &[(N - 1, self.intensity), (1, self.moment_noise)])
     }
+}
+
+/// The drift of `y'' + y = u` with `y`, `y'`, `u` first, completed by what moves `u`.
+pub(super) fn oscillator_driven_by<const N: usize>(
+    moment: impl FnOnce(&mut Matrix<N>),
+) -> Matrix<N> {
+    let mut a = [[0.0; N]; N];
+    a[0][1] = 1.0;
+    a[1][0] = -1.0;
+    a[1][2] = 1.0;
+    moment(&mut a);
+    a
+}
+
+/// The step over `tau` of `dx = A x dt` plus white noises, each with its component and intensity.
+pub(super) fn integrated<const N: usize>(
+    drift: &Matrix<N>,
+    tau: f64,
+    noises: &[(usize, f64)],
+) -> Step<N> {
+    let flow = |tau: f64| exponential(&drift.map(|row| row.map(|a| a * tau)));
+    let mut columns = Vec::with_capacity(NODES.len() * noises.len());
+    for (node, weight) in NODES {
+        let reached = flow(tau * (1.0 - node));
+        let root = (weight * tau).sqrt();
+        for &(component, intensity) in noises.iter().filter(|noise| noise.1 > 0.0) {
+            columns.push(std::array::from_fn(|i| reached[i][component] * root * intensity));
+        }
+    }
+    Step { f: flow(tau), g: triangular_root(&mut columns) }
 }
 
 /// The paper's discrete moment: one impulse `U dt` per sample (2.6) and independent first
@@ -77,7 +111,7 @@ pub struct PaperWalk {
 }
 
 impl Transition<3> for PaperWalk {
-    fn step(&self, tau: f64) -> Step<3> {
+    fn step(&self, _to: usize, tau: f64) -> Step<3> {
         let (sin, cos) = tau.sin_cos();
         Step {
             f: [[cos, sin, sin * tau], [-sin, cos, cos * tau], [0.0, 0.0, 1.0]],
@@ -94,7 +128,7 @@ mod tests {
     #[test]
     fn two_half_steps_make_one_step() {
         let prior = IntegratedWiener { intensity: 2.0, moment_noise: 0.5 };
-        let (half, whole): (Step<5>, Step<5>) = (prior.step(0.2), prior.step(0.4));
+        let (half, whole): (Step<5>, Step<5>) = (prior.step(1, 0.2), prior.step(1, 0.4));
         let moved = product(&half.f, &half.f);
         let carried = product(&half.f, &half.g);
         for i in 0..5 {
