@@ -46,7 +46,7 @@ pub fn quantile(components: &[Component], level: f64) -> f64 {
         let step = (below - level) / density;
         let next = x - step;
         let safe = if next > low && next < high { next } else { 0.5 * (low + high) };
-        if (safe - x).abs() < 1e-9 * sd {
+        if (safe - x).abs() < 1e-7 * sd {
             return safe;
         }
         x = safe;

@@ -7,6 +7,7 @@ use rand_distr::{Distribution, StandardNormal};
 use super::prior::HyperpriorCheck;
 use crate::inverse::paper::exact::{ExactPosterior, exact};
 use crate::inverse::paper::{Convolution, Hyperpriors, PriorPower};
+use crate::inverse::state_space::posterior::Quadrature;
 use crate::tank::FreeRoll;
 use crate::tank::paper;
 
@@ -49,7 +50,8 @@ pub(super) fn check() -> HyperpriorCheck {
         Convolution::new(motion.len(), INTERVAL_S, paper::NATURAL_FREQUENCY_BARE_RAD_S)
             .expect("500 samples at 50 Hz are within the limits of the method");
     let g = convolution.observable(&measured, decay.initial_roll_rad, 0.0, None);
-    let solved = |hyper: &Hyperpriors, power| exact(&g, &convolution, hyper, power);
+    let solved =
+        |hyper: &Hyperpriors, power| exact(&g, &convolution, hyper, power, Quadrature::BAND);
     let printed = solved(&Hyperpriors::PAPER, PriorPower::Printed);
     let vague = Hyperpriors { alpha1: VAGUE, beta1: VAGUE, alpha2: VAGUE, beta2: VAGUE };
     let scale_free = solved(&vague, PriorPower::Rank);

@@ -31,12 +31,12 @@ pub struct Motion {
     pub roll_acceleration_rad_per_s2: f64,
 }
 
-/// Longest step in scaled time: the first term left out of a series of this order is 4e-11 of the
+/// Longest step in scaled time: the first term left out of a series of this order is 1e-10 of the
 /// roll, so a thousand periods shift it by less than 1e-6 of its amplitude.
 const LONGEST_STEP: f64 = 0.32;
 
 /// Terms of a series over one step, the constant first.
-pub(super) const N_TERMS: usize = 10;
+pub(super) const N_TERMS: usize = 9;
 
 /// A power series over one step, its argument running from 0 to 1.
 pub(super) type Series = [f64; N_TERMS];

@@ -2,14 +2,15 @@
 
 use super::disturbance::Noise;
 use super::fit::{CURVE, N_UNKNOWNS};
-use super::form::FORMS;
+use super::form::{FORMS, Shape, power_unit};
 use super::posterior::{DecayPosterior, Weighed};
+use crate::inverse::estimate::Estimate;
 use crate::inverse::identification::{Beliefs, CurvePoint, FormBelief};
 use crate::inverse::mixture::{self, Component};
 use crate::inverse::record::Record;
 
 /// Points of the damping curve, from nil to the largest rate of the run.
-const N_POINTS: u32 = 24;
+const N_POINTS: u32 = 16;
 
 /// Symbols and units of the coefficients of each power of the rate.
 const COEFFICIENTS: [(&str, &str); 3] = [("b1", "1/s"), ("b2", "1"), ("b3", "s")];
@@ -48,18 +49,51 @@ fn forms(posterior: &DecayPosterior) -> Vec<FormBelief> {
     beliefs
 }
 
+/// Symbol, unit and estimate of each coefficient of a form.
 fn coefficients(
     posterior: &DecayPosterior,
     form: usize,
-) -> Vec<(&'static str, &'static str, crate::inverse::estimate::Estimate)> {
+) -> Vec<(&'static str, &'static str, Estimate)> {
+    let powers = match FORMS[form].shape {
+        Shape::Powers(powers) => powers,
+        Shape::PowerNear(_) => return power_law(posterior),
+        Shape::Curve(_) => return Vec::new(),
+    };
     let of = |(direction, power): (usize, &u8)| {
-        let mut weights = vec![0.0; FORMS[form].powers.len()];
-        weights[direction] = FORMS[form].unit(direction, &posterior.linearised.scale);
+        let mut weights = vec![0.0; powers.len()];
+        weights[direction] = power_unit(f64::from(*power), &posterior.linearised.scale);
         let components = posterior.coefficients(form, &weights);
         let (symbol, unit) = COEFFICIENTS[usize::from(*power) - 1];
         (!components.is_empty()).then(|| (symbol, unit, mixture::estimate(&components)))
     };
-    FORMS[form].powers.iter().enumerate().filter_map(of).collect()
+    powers.iter().enumerate().filter_map(of).collect()
+}
+
+/// Power and size of the power law, over all its nodes.
+fn power_law(posterior: &DecayPosterior) -> Vec<(&'static str, &'static str, Estimate)> {
+    let (mut powers, mut sizes) = (Vec::new(), Vec::new());
+    for weighed in &posterior.solutions {
+        let Shape::PowerNear(near) = FORMS[weighed.form].shape else { continue };
+        let solution = &weighed.solution;
+        let [size, bend] = [solution.coefficients[0], solution.coefficients[1]];
+        // The power is a ratio of two coefficients; its spread is that of its tangent.
+        let power = near + bend / size;
+        let tangent = |f: &Vec<f64>| (f[1] - (bend / size) * f[0]) / size;
+        let unit = power_unit(power, &posterior.linearised.scale);
+        let sd_of = |part: &dyn Fn(&Vec<f64>) -> f64| {
+            let square: f64 = solution.coefficient_factor.iter().map(|f| part(f).powi(2)).sum();
+            (square * solution.noise_variance_rad2()).sqrt()
+        };
+        let slope = posterior.linearised.scale.rate_rad_per_s.ln();
+        let weight = weighed.weight();
+        powers.push(Component { weight, mean: power, sd: sd_of(&tangent) });
+        let relative = |f: &Vec<f64>| f[0] / size - slope * tangent(f);
+        sizes.push(Component { weight, mean: unit * size, sd: unit * size * sd_of(&relative) });
+    }
+    if powers.is_empty() {
+        return Vec::new();
+    }
+    vec![("b", "s^(p-2)", mixture::estimate(&sizes)), ("p", "-", mixture::estimate(&powers))]
 }
 
 /// The damping moment against the roll rate, over all forms.

@@ -41,6 +41,7 @@ pub struct Disturbance {
 ///
 /// The columns are those of the unknowns, then the record: what the linearised equation leaves of
 /// it when damping and cubic restoring are nil, so that these two are sought as a whole.
+#[derive(Clone)]
 pub struct Columns {
     values: Vec<Vec<f64>>,
     tau: Vec<f64>,
@@ -84,6 +85,34 @@ impl Columns {
     /// Scaled time from one sample to the next [-].
     pub fn spacing(&self) -> f64 {
         self.tau[self.tau.len() - 1] / (self.tau.len() - 1) as f64
+    }
+
+    /// The same columns with another record.
+    #[must_use]
+    pub fn with_record(&self, record: Vec<f64>) -> Self {
+        let mut columns = self.clone();
+        columns.values[N_UNKNOWNS] = record;
+        columns
+    }
+
+    /// Entry of a column, the record last, at a sample [rad].
+    pub fn at(&self, column: usize, sample: usize) -> f64 {
+        self.values[column][sample]
+    }
+
+    /// Scaled sample times [-].
+    pub fn tau(&self) -> &[f64] {
+        &self.tau
+    }
+
+    /// Size of the roll against its largest, sample by sample [-].
+    pub fn envelope(&self) -> &[f64] {
+        &self.envelope
+    }
+
+    /// The steps of a unit moment of each order.
+    pub(super) fn steps(&self) -> (&Steps<3>, &Steps<4>, &Steps<5>) {
+        (&self.steps.0, &self.steps.1, &self.steps.2)
     }
 
     /// Samples of the noise that are worth an independent one each [-].

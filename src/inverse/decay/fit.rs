@@ -73,7 +73,7 @@ impl Linearised {
         let mut fitted = [0.0; N_UNKNOWNS];
         fitted[CUBIC_RESTORING] = point.decay.restoring_cubic_per_rad2;
         let parts = [b1_per_s, b2 * rate_rad_per_s, b3_s * rate_rad_per_s.powi(2)];
-        for (part, power) in parts.into_iter().zip(1..) {
+        for (part, power) in parts.into_iter().zip([1.0, 2.0, 3.0]) {
             for (fitted, curve) in fitted[CURVE..].iter_mut().zip(power_curve(power)) {
                 *fitted += part * curve / scale.damping_per_s;
             }

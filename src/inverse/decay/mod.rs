@@ -3,6 +3,7 @@
 mod beliefs;
 pub mod curve;
 pub mod disturbance;
+pub mod draw;
 pub mod equivalent;
 pub mod fit;
 pub mod form;
@@ -55,16 +56,14 @@ pub struct Solved {
 pub fn solve(run: &Run) -> Result<Solved, String> {
     let record = Record::new(&run.roll)?;
     let thinned = record.per_period(SAMPLES_PER_PERIOD);
-    let cubic = FORMS[CUBIC].powers;
+    let cubic = FORMS[CUBIC].powers();
     let linear = settle(&thinned, first_guess(&thinned, run), cubic, false)?;
     let best = settle(&thinned, linear, cubic, true)?;
     let mut posterior = posterior(&thinned, best);
     // A law of another form is linearised where it fits best itself.
     let favoured = posterior.solutions[0].form;
     if favoured != CUBIC {
-        let powers = FORMS[favoured].powers;
-        let best =
-            settle(&thinned, best, if powers.is_empty() { &[1, 2, 3] } else { powers }, true)?;
+        let best = settle(&thinned, best, FORMS[favoured].powers(), true)?;
         posterior = self::posterior(&thinned, best);
     }
     Ok(Solved { record, thinned, linear, posterior })

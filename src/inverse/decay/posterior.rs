@@ -2,7 +2,7 @@
 
 use super::disturbance::{Columns, Disturbance};
 use super::fit::{CUBIC_RESTORING, FREQUENCY, Linearised, N_UNKNOWNS, RATE, ROLL, ZERO};
-use super::form::{CUBIC, FORMS};
+use super::form::{CUBIC, power_unit};
 use super::search::{Candidate, Search, log_sum};
 use super::solution::Solution;
 use crate::inverse::mixture::Component;
@@ -39,6 +39,10 @@ pub struct DecayPosterior {
     pub solutions: Vec<Weighed>,
     /// The columns, for whoever draws from the posterior.
     pub columns: Columns,
+    /// Noise of the thinned record [rad] that priors were measured with.
+    pub noise_rad: f64,
+    /// Noise variance that the roll channel's quantum makes in each sample [rad2].
+    pub floor_rad2: f64,
 }
 
 /// Solutions lighter than this within their form are dropped.
@@ -52,7 +56,7 @@ impl DecayPosterior {
         let noise_rad = (square / columns.n_samples() as f64).max(floor_rad2).sqrt();
         let search = Search::new(&columns, noise_rad, floor_rad2);
         let (disturbances, solutions) = weighed(&search.candidates());
-        Self { linearised, disturbances, solutions, columns }
+        Self { linearised, disturbances, solutions, columns, noise_rad, floor_rad2 }
     }
 
     /// Components of the mixture of one linear combination of the unknowns.
@@ -98,8 +102,8 @@ impl DecayPosterior {
 
     /// Components of `a b1 + c b3` of the law of Sec. 4.1 [1/s] and [s].
     pub fn cubic_law(&self, a: f64, c: f64) -> Vec<Component> {
-        let (form, scale) = (&FORMS[CUBIC], &self.linearised.scale);
-        self.coefficients(CUBIC, &[a * form.unit(0, scale), c * form.unit(1, scale)])
+        let scale = &self.linearised.scale;
+        self.coefficients(CUBIC, &[a * power_unit(1.0, scale), c * power_unit(3.0, scale)])
     }
 
     /// Components of a linear combination of the coefficients of one form's directions.
@@ -125,7 +129,11 @@ impl DecayPosterior {
     /// Posterior probability of what `is` tells.
     pub fn probability(&self, is: impl Fn(&Weighed, &Disturbance) -> bool) -> f64 {
         let holds = |w: &&Weighed| is(w, &self.disturbances[w.disturbance]);
-        self.solutions.iter().filter(holds).map(Weighed::weight).sum()
+        self.solutions
+            .iter()
+            .filter(holds)
+            .map(Weighed::weight)
+            .fold(0.0, |sum, weight| sum + weight)
     }
 }
 

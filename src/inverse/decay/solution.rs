@@ -95,6 +95,19 @@ impl Plan {
         }
     }
 
+    /// Unknowns from their prior at a noise of `noise_sd_rad` [rad]; nil where it is flat.
+    pub fn prior_draw(
+        &self,
+        noise_sd_rad: f64,
+        mut normal: impl FnMut() -> f64,
+    ) -> [f64; N_UNKNOWNS] {
+        // The prior is conjugate: its width follows the noise.
+        let share = noise_sd_rad / self.noise_rad;
+        let values: Vec<f64> =
+            self.units.iter().map(|u| u.prior_sd.map_or(0.0, |sd| share * sd * normal())).collect();
+        self.spread(&values)
+    }
+
     /// The whitened columns of this form, its priors added, reduced.
     fn triangle(&self, filtered: &Filtered) -> Triangle {
         let n = self.units.len();

@@ -1,7 +1,9 @@
 //! The posterior (2.13) without a chain, for comparison with the sampler.
 
 use super::{Convolution, Hyperpriors, PriorPower};
-use crate::inverse::state_space::posterior::{Hyperprior, MomentProblem, StatePosterior};
+use crate::inverse::state_space::posterior::{
+    Hyperprior, MomentProblem, Quadrature, StatePosterior,
+};
 use crate::inverse::state_space::transition::PaperWalk;
 
 /// Exact mean and standard deviation of the paper's moment history.
@@ -21,6 +23,7 @@ pub fn exact(
     convolution: &Convolution,
     hyper: &Hyperpriors,
     power: PriorPower,
+    quadrature: Quadrature,
 ) -> ExactPosterior {
     let w = convolution.natural_frequency_rad_s();
     let step = w * convolution.step_s();
@@ -31,6 +34,7 @@ pub fn exact(
         free_components: &[2],
         prior: |difference: f64| PaperWalk { difference },
         hyperprior: Hyperprior::Conjugate { hyper: *hyper, power, natural_frequency_rad_s: w },
+        quadrature,
     }
     .solve::<3, _>();
     ExactPosterior {

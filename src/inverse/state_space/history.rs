@@ -1,6 +1,6 @@
 //! From a roll record to the posterior of its moment history, smoothness order by evidence.
 
-use super::posterior::{Hyperprior, MomentProblem, StatePosterior};
+use super::posterior::{Hyperprior, MomentProblem, Quadrature, StatePosterior};
 use super::transition::IntegratedWiener;
 use crate::inverse::identification::MomentHistory;
 use crate::inverse::record::Record;
@@ -43,16 +43,24 @@ pub fn state_posterior(tau: &[f64], record_rad: &[f64], moment_noise: f64) -> Or
         free_components,
         prior,
         hyperprior,
+        quadrature: Quadrature::BAND,
     };
-    let solved = [
-        (1, problem(&[0, 1, 2]).solve::<3, _>()),
-        (2, problem(&[0, 1, 2, 3]).solve::<4, _>()),
-        (3, problem(&[0, 1, 2, 3, 4]).solve::<5, _>()),
+    let (first, second, third) =
+        (problem(&[0, 1, 2]), problem(&[0, 1, 2, 3]), problem(&[0, 1, 2, 3, 4]));
+    let weighed = [
+        first.weigh::<3, IntegratedWiener>(),
+        second.weigh::<4, IntegratedWiener>(),
+        third.weigh::<5, IntegratedWiener>(),
     ];
-    let [first, second, third] = solved.map(|(order, states)| OrderedPosterior { order, states });
-    [second, third].into_iter().fold(first, |best, next| {
-        if next.states.log_evidence > best.states.log_evidence { next } else { best }
-    })
+    let evidence = |order: usize| weighed[order - 1].log_evidence;
+    let order = [2, 3].into_iter().fold(1, |a, b| if evidence(b) > evidence(a) { b } else { a });
+    // Only the best order is worth running back.
+    let states = match (order, weighed) {
+        (1, [nodes, _, _]) => first.smooth::<3, IntegratedWiener>(nodes),
+        (2, [_, nodes, _]) => second.smooth::<4, IntegratedWiener>(nodes),
+        (_, [_, _, nodes]) => third.smooth::<5, IntegratedWiener>(nodes),
+    };
+    OrderedPosterior { order, states }
 }
 
 impl MomentHistory {

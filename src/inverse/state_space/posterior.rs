@@ -59,6 +59,22 @@ pub struct StatePosterior {
 /// over any record; above it the moment follows the noise of every sample.
 const LOG_INTENSITY_RANGE: (f64, f64) = (-10.0, 14.0);
 
+/// How finely the intensity is integrated over.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quadrature {
+    /// Step, in standard deviations of the logarithm of the intensity at its mode.
+    pub step_sd: f64,
+    /// Nodes are added on both sides until they weigh less than this share of the heaviest.
+    pub negligible: f64,
+}
+
+impl Quadrature {
+    /// What a band needs: its ends are right to a thousandth of their distance.
+    pub const BAND: Self = Self { step_sd: 0.8, negligible: 1e-4 };
+    /// As many digits as the arithmetic carries.
+    pub const EXACT: Self = Self { step_sd: 0.4, negligible: 1e-15 };
+}
+
 /// The inverse problem of one record under one family of priors.
 pub struct MomentProblem<'a, F> {
     /// Scaled sample times.
@@ -71,6 +87,17 @@ pub struct MomentProblem<'a, F> {
     pub prior: F,
     /// Belief about smoothness and noise.
     pub hyperprior: Hyperprior,
+    /// How finely the smoothness is integrated over.
+    pub quadrature: Quadrature,
+}
+
+/// The nodes of a quadrature with what they sum to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Weighed {
+    /// The nodes, in order of their intensity.
+    pub nodes: Vec<Node>,
+    /// Logarithm of the evidence, up to a constant common to all orders.
+    pub log_evidence: f64,
 }
 
 impl<F> MomentProblem<'_, F> {
@@ -79,41 +106,56 @@ impl<F> MomentProblem<'_, F> {
     where
         F: Fn(f64) -> T,
     {
-        let nodes = self.nodes::<N, T>();
+        self.smooth(self.weigh::<N, T>())
+    }
+
+    /// The posterior of roll, rate and moment over the nodes of [`MomentProblem::weigh`].
+    pub fn smooth<const N: usize, T: Transition<N>>(&self, weighed: Weighed) -> StatePosterior
+    where
+        F: Fn(f64) -> T,
+    {
+        let Weighed { nodes, log_evidence } = weighed;
         let top = nodes.iter().map(|n| n.log_weight).fold(f64::NEG_INFINITY, f64::max);
-        let spacing = nodes.get(1).map_or(1.0, |n| n.log_intensity - nodes[0].log_intensity);
         let total: f64 = nodes.iter().map(|n| (n.log_weight - top).exp()).sum();
         let columns = self.columns();
         let n_flat = columns.len() - 1;
         let mut mean = vec![[0.0; 3]; self.tau.len()];
         let mut second = mean.clone();
         let mut noise_variance = 0.0;
-        for node in &nodes {
+        // Moments about the heaviest node's mean, so that no digits are lost.
+        let mut centre: Vec<[f64; 3]> = Vec::new();
+        let mut order: Vec<&Node> = nodes.iter().collect();
+        order.sort_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
+        for node in order {
             let share = (node.log_weight - top).exp() / total;
             noise_variance += share * node.noise_variance;
             let prior = (self.prior)(node.log_intensity.exp());
             let (filtered, smoothed) = smooth(&prior, self.tau, &columns);
             let weights = filtered.triangle.explained_by(n_flat, n_flat);
             let inverse = filtered.triangle.inverse_columns(n_flat);
+            let value = |i: usize| [0, 1, 2].map(|k| smoothed.mean(i, k, &weights));
+            if centre.is_empty() {
+                centre = (0..self.tau.len()).map(value).collect();
+            }
             for (i, (mean, second)) in mean.iter_mut().zip(&mut second).enumerate() {
-                for k in 0..3 {
-                    let m = smoothed.mean(i, k, &weights);
+                for (k, m) in value(i).into_iter().enumerate() {
+                    let from_centre = m - centre[i][k];
                     let v = smoothed.variance(i, k, &inverse) * node.noise_variance;
-                    mean[k] += share * m;
-                    second[k] += share * (v + m * m);
+                    mean[k] += share * from_centre;
+                    second[k] += share * (v + from_centre * from_centre);
                 }
             }
         }
-        let sd = mean
-            .iter()
-            .zip(&second)
-            .map(|(m, s)| std::array::from_fn(|k| (s[k] - m[k] * m[k]).max(0.0).sqrt()))
-            .collect();
+        let spread = |(m, s): (&[f64; 3], &[f64; 3])| {
+            std::array::from_fn(|k| (s[k] - m[k] * m[k]).max(0.0).sqrt())
+        };
+        let sd = mean.iter().zip(&second).map(spread).collect();
+        let whole = |(c, m): (&[f64; 3], &[f64; 3])| std::array::from_fn(|k| c[k] + m[k]);
         StatePosterior {
-            mean,
+            mean: centre.iter().zip(&mean).map(whole).collect(),
             sd,
             noise_sd_rad: noise_variance.sqrt(),
-            log_evidence: top + (total * spacing).ln(),
+            log_evidence,
             nodes,
         }
     }
@@ -124,36 +166,53 @@ impl<F> MomentProblem<'_, F> {
         free.chain([Column::Record(self.record)]).collect()
     }
 
-    /// Nodes around the mode, evenly spaced, that hold all but a millionth of the weight.
-    fn nodes<const N: usize, T: Transition<N>>(&self) -> Vec<Node>
+    /// Evenly spaced nodes about the mode that hold the weight, and the evidence.
+    pub fn weigh<const N: usize, T: Transition<N>>(&self) -> Weighed
     where
         F: Fn(f64) -> T,
     {
         let at = |x: f64| self.node::<N, T>(x);
         let (low, high) = LOG_INTENSITY_RANGE;
-        let coarse: Vec<Node> =
-            (0..=24).map(|i| at(low + f64::from(i) * (high - low) / 24.0)).collect();
-        let best = coarse
-            .iter()
-            .copied()
-            .reduce(|a, b| if b.log_weight > a.log_weight { b } else { a })
-            .expect("the search has nodes");
-        // Newton steps on the parabola through three close points find the mode and its width.
+        let heavier = |a: Node, b: Node| if b.log_weight > a.log_weight { b } else { a };
+        let scan = (1..=12).map(|i| at(low + f64::from(i) * (high - low) / 12.0));
+        let best = scan.fold(at(low), heavier);
+        // Newton steps on the parabola through three points find the mode and its width.
         let mut mode = best.log_intensity;
-        let mut width = 0.5;
+        let mut width: f64 = 1.0;
         for _ in 0..3 {
-            let (left, here, right) = (at(mode - 0.25), at(mode), at(mode + 0.25));
-            let slope = (right.log_weight - left.log_weight) / 0.5;
-            let bend = (right.log_weight - 2.0 * here.log_weight + left.log_weight) / 0.0625;
+            let reach = 0.5 * width;
+            let (left, here, right) = (at(mode - reach), at(mode), at(mode + reach));
+            let slope = (right.log_weight - left.log_weight) / (2.0 * reach);
+            let bend =
+                (right.log_weight - 2.0 * here.log_weight + left.log_weight) / (reach * reach);
             if bend >= 0.0 {
                 break;
             }
             width = (-bend).sqrt().recip().clamp(0.01, 2.0);
-            mode = (mode - (slope / bend).clamp(-1.0, 1.0)).clamp(low, high);
+            mode = (mode - (slope / bend).clamp(-1.5, 1.5)).clamp(low, high);
         }
-        // The weight is close to a normal in the logarithm: a trapezoidal rule of steps 0.8 sd over
-        // +-5 sd has an error far below the weights it drops.
-        (-6..=6).map(|i| at(mode + 0.8 * width * f64::from(i))).collect()
+        // A trapezoidal rule over a bell curve gains digits with the square of its fineness.
+        let step = self.quadrature.step_sd * width;
+        let middle = at(mode);
+        let least = middle.log_weight + self.quadrature.negligible.ln();
+        let side = |sign: f64| {
+            let heavy = |node: &Node| node.log_weight > least;
+            let mut nodes = Vec::new();
+            for i in 1..200_u32 {
+                let node = at(mode + sign * step * f64::from(i));
+                let more = heavy(&node);
+                nodes.push(node);
+                if !more {
+                    break;
+                }
+            }
+            nodes
+        };
+        let nodes: Vec<Node> =
+            side(-1.0).into_iter().rev().chain([middle]).chain(side(1.0)).collect();
+        let top = nodes.iter().map(|n| n.log_weight).fold(f64::NEG_INFINITY, f64::max);
+        let total: f64 = nodes.iter().map(|n| (n.log_weight - top).exp()).sum();
+        Weighed { nodes, log_evidence: top + (total * step).ln() }
     }
 
     fn node<const N: usize, T: Transition<N>>(&self, log_intensity: f64) -> Node
@@ -163,10 +222,10 @@ impl<F> MomentProblem<'_, F> {
         let prior = (self.prior)(log_intensity.exp());
         let columns = self.columns();
         let filtered = filter(&prior, self.tau, &columns, None);
-        self.weigh(log_intensity, &filtered, columns.len() - 1)
+        self.node_of(log_intensity, &filtered, columns.len() - 1)
     }
 
-    fn weigh(&self, log_intensity: f64, filtered: &Filtered, n_flat: usize) -> Node {
+    fn node_of(&self, log_intensity: f64, filtered: &Filtered, n_flat: usize) -> Node {
         let triangle = &filtered.triangle;
         let residual = triangle.at(n_flat, n_flat).powi(2);
         let log_flat: f64 = (0..n_flat).map(|i| triangle.at(i, i).abs().ln()).sum();
