@@ -24,4 +24,6 @@ pub mod report;
 
 pub mod pipeline;
 
+pub mod bench;
+
 pub mod command;

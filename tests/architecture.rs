@@ -5,9 +5,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The layers of `src`, top first; each may name those below it.
-const LAYERS: [&str; 13] = [
+const LAYERS: [&str; 14] = [
     "main",
     "command",
+    "bench",
     "pipeline",
     "report",
     "catalogue",
@@ -30,10 +31,10 @@ const OWNERS: [(&str, &[&str]); 16] = [
     ("plotters", &["src/report"]),
     ("rusqlite", &["src/catalogue"]),
     ("faer", &["src/inverse", "src/reference"]),
-    ("statrs", &["src/inverse"]),
-    ("rand", &["src/inverse", "src/tank", "src/reference"]),
-    ("rand_chacha", &["src/inverse", "src/tank", "src/reference"]),
-    ("rand_distr", &["src/inverse", "src/tank", "src/reference"]),
+    ("statrs", &["src/inverse", "src/bench"]),
+    ("rand", &["src/inverse", "src/tank", "src/reference", "src/bench"]),
+    ("rand_chacha", &["src/inverse", "src/tank", "src/reference", "src/bench"]),
+    ("rand_distr", &["src/inverse", "src/tank", "src/reference", "src/bench"]),
     ("toml", &["src/campaign", "src/tank"]),
     ("csv", &["src/report", "replay/src"]),
     ("mcap", &["replay/src"]),

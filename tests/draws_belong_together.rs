@@ -61,7 +61,11 @@ fn compare(posterior: &DecayPosterior, draws: &[Draw], component: usize) -> (f64
     (worst, ratio)
 }
 
-fn assert_agreement(posterior: &DecayPosterior) {
+fn assert_agreement(posterior: &mut DecayPosterior) {
+    // Bands leave out what is lighter than a twentieth of the heaviest; here the draws do too.
+    let heaviest = posterior.solutions[0].log_weight;
+    posterior.solutions.retain(|weighed| weighed.log_weight > heaviest + 0.05_f64.ln());
+    let posterior = &*posterior;
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let draws: Vec<Draw> = (0..N_DRAWS).map(|_| draw(posterior, &mut rng)).collect();
     for component in 0..3 {
@@ -80,16 +84,16 @@ fn assert_agreement(posterior: &DecayPosterior) {
 
 #[test]
 fn draws_of_a_lawful_decay_fill_its_bands() {
-    let solved = solve(&run(|_, _| 0.0)).expect("a plain decay");
+    let mut solved = solve(&run(|_, _| 0.0)).expect("a plain decay");
     assert!(solved.posterior.probability(|_, d| d.misfit.is_some()) < 0.5);
-    assert_agreement(&solved.posterior);
+    assert_agreement(&mut solved.posterior);
 }
 
 #[test]
 fn draws_of_a_decay_with_a_hidden_moment_fill_its_bands() {
     let hidden = |t: f64, rate: f64| 0.4 * rate * (0.9 * t).sin();
-    let solved = solve(&run(hidden)).expect("a decay");
+    let mut solved = solve(&run(hidden)).expect("a decay");
     let misfit = solved.posterior.probability(|_, d| d.misfit.is_some());
     assert!(misfit > 0.95, "{misfit}");
-    assert_agreement(&solved.posterior);
+    assert_agreement(&mut solved.posterior);
 }

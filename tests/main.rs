@@ -26,6 +26,7 @@ mod the_command_line;
 mod the_exact_posterior_is_the_dense_one;
 mod the_json_contract_holds;
 mod the_paper_campaign_is_covered;
+mod the_posterior_is_calibrated;
 mod the_report_is_complete_and_self_contained;
 mod the_report_is_read_at_a_glance;
 mod the_simulated_tank_keeps_its_script;

@@ -48,6 +48,9 @@ pub enum Failure {
         #[from]
         source: WriteError,
     },
+    /// A figure cannot be measured.
+    #[error("the campaign cannot be measured: {0}")]
+    Bench(String),
     /// The simulated campaign cannot be written.
     #[error(transparent)]
     Tank {

@@ -1,5 +1,6 @@
 //! The commands of `rolltank`, one file each.
 
+mod bench;
 mod check;
 mod demo;
 mod exit;
@@ -44,6 +45,7 @@ enum Command {
     Simulate(simulate::Arguments),
     Import(import::Arguments),
     Reference(reference::Arguments),
+    Bench(bench::Arguments),
 }
 
 /// Does what the command line asks for; results go to `out`, progress to standard error.
@@ -60,5 +62,6 @@ pub fn run(line: &CommandLine, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Simulate(arguments) => simulate::run(arguments, out),
         Command::Import(arguments) => import::run(arguments, out),
         Command::Reference(arguments) => reference::run(arguments, out),
+        Command::Bench(arguments) => bench::run(arguments, out),
     }
 }

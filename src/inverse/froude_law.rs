@@ -84,18 +84,7 @@ fn combination(nodes: &[Node], weights: &[f64]) -> Estimate {
 /// its central 90 %.
 fn kappa(nodes: &[Node]) -> Estimate {
     const N_LEVELS: u32 = 18;
-    let unit = Normal::standard();
-    // The ratio lies below kappa where slope - kappa b0 is negative, b0 being positive.
-    let below = |kappa: f64| -> f64 {
-        nodes
-            .iter()
-            .map(|node| {
-                let mean = node.mean[1] - kappa * node.mean[0];
-                let sd = quadratic(&node.covariance, &[-kappa, 1.0]).sqrt();
-                node.weight * unit.cdf(-mean / sd)
-            })
-            .sum()
-    };
+    let below = |kappa: f64| below(nodes, kappa);
     let quantile = |level: f64| {
         let (mut low, mut high) = (-1.0, 1.0);
         while below(high) < level && high < 1e9 {
@@ -118,6 +107,27 @@ fn kappa(nodes: &[Node]) -> Estimate {
     let square = levels.iter().map(|q| (q - mean).powi(2)).sum::<f64>();
     let sd = (square / f64::from(N_LEVELS)).sqrt();
     Estimate { mean, sd, lo95: quantile(0.025), hi95: quantile(0.975) }
+}
+
+/// Probability that the ratio lies below `kappa`.
+fn below(nodes: &[Node], kappa: f64) -> f64 {
+    let unit = Normal::standard();
+    // It does where slope - kappa b0 is negative, b0 being positive.
+    nodes
+        .iter()
+        .map(|node| {
+            let mean = node.mean[1] - kappa * node.mean[0];
+            let sd = quadratic(&node.covariance, &[-kappa, 1.0]).sqrt();
+            node.weight * unit.cdf(-mean / sd)
+        })
+        .sum()
+}
+
+/// Posterior probability that the speed coefficient over these runs lies below `kappa` [-].
+pub fn probability_below(points: &[Point], kappa: f64) -> f64 {
+    let linear: Vec<(f64, f64)> = points.iter().map(|p| (p.b1_per_s.mean, p.b1_per_s.sd)).collect();
+    let rows: Vec<Vec<f64>> = points.iter().map(|p| vec![1.0, p.froude.powi(2)]).collect();
+    below(&nodes(&rows, &linear), kappa)
 }
 
 fn quadratic(matrix: &Mat<f64>, x: &[f64]) -> f64 {

@@ -1,10 +1,8 @@
 //! The paper's own route from the observable to the damping law: chains, scatter, plain fit.
 
-use super::estimate::Estimate;
 use super::identification::{Chain, DampingFit, MomentHistory};
-use super::paper::{ChainSettings, Convolution, Hyperpriors, sample};
+use super::paper::{ChainSettings, Convolution, Hyperpriors, plain_fit, sample};
 use super::record::Record;
-use super::state_space::triangle::Triangle;
 
 /// Samples of a record that the chains see: as many as the paper's runs have, more where a period
 /// would have fewer than twenty, for its impulses (2.6) need them close.
@@ -68,25 +66,4 @@ fn interpolated(time_s: &[f64], values: &[f64], at_s: f64) -> f64 {
     let after = time_s.partition_point(|t| *t < at_s).clamp(1, time_s.len() - 1);
     let share = (at_s - time_s[after - 1]) / (time_s[after] - time_s[after - 1]);
     values[after - 1] + share.clamp(0.0, 1.0) * (values[after] - values[after - 1])
-}
-
-/// Least squares of `-E[U] = b1 phi' + b3 phi'^3`, every point alike.
-fn plain_fit(rate_rad_per_s: &[f64], moment_per_s2: &[f64]) -> DampingFit {
-    let mut triangle = Triangle::new(3);
-    for (rate, moment) in rate_rad_per_s.iter().zip(moment_per_s2) {
-        triangle.push([*rate, rate.powi(3), -moment]);
-    }
-    triangle.settle();
-    let values: Vec<f64> = triangle.explained_by(2, 2).iter().map(|w| -w).collect();
-    let noise = triangle.at(2, 2).abs() / (rate_rad_per_s.len() as f64 - 2.0).sqrt();
-    let (r11, r12, r22) = (triangle.at(0, 0), triangle.at(0, 1), triangle.at(1, 1));
-    let b3_sd = noise / r22.abs();
-    let b1_sd = noise * (1.0 + (r12 / r22).powi(2)).sqrt() / r11.abs();
-    let correlation = -(r12 / r22) * r22.signum() * r11.signum() * r22.signum()
-        / (1.0 + (r12 / r22).powi(2)).sqrt();
-    DampingFit {
-        b1_per_s: Estimate::normal(values[0], b1_sd),
-        b3_s: Estimate::normal(values[1], b3_sd),
-        correlation,
-    }
 }

@@ -1,6 +1,6 @@
 //! How a decay answers a small moment: the linearised equation solved by variation of constants.
 
-use super::equation::{Decay, Expansion, Motion, N_TERMS, at, product_term};
+use super::equation::{Decay, Expansion, Motion, N_TERMS, Series, at, product_term};
 
 /// Change of a decay [rad, rad/s, rad/s2] per unit of whatever changed it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,25 +35,26 @@ struct Instant {
     first: (f64, f64),
     /// The free solution from a unit of rate, and its rate.
     second: (f64, f64),
+    /// Both solutions over their Wronskian.
+    kernels: (f64, f64),
 }
 
 impl Instant {
-    /// The two free solutions over their Wronskian.
-    fn kernels(&self) -> (f64, f64) {
-        let wronskian = self.first.0 * self.second.1 - self.first.1 * self.second.0;
-        (self.first.0 / wronskian, self.second.0 / wronskian)
+    fn new(motion: (f64, f64), first: (f64, f64), second: (f64, f64)) -> Self {
+        let over_wronskian = (first.0 * second.1 - first.1 * second.0).recip();
+        let kernels = (first.0 * over_wronskian, second.0 * over_wronskian);
+        Self { roll: motion.0, rate: motion.1, first, second, kernels }
     }
 }
 
 impl Path {
     /// Solves `decay` at `time_s` [s], which starts at zero and rises.
     pub fn new(decay: &Decay, time_s: &[f64]) -> Self {
-        let start = Instant {
-            roll: decay.initial_roll_rad,
-            rate: decay.initial_roll_rate_rad_per_s,
-            first: (1.0, 0.0),
-            second: (0.0, 1.0),
-        };
+        let start = Instant::new(
+            (decay.initial_roll_rad, decay.initial_roll_rate_rad_per_s),
+            (1.0, 0.0),
+            (0.0, 1.0),
+        );
         let mut path = Self {
             decay: *decay,
             nodes: Vec::with_capacity(time_s.len() + 1),
@@ -68,11 +69,12 @@ impl Path {
                 let (motion, step_s) = (&piece.motion, piece.step_s);
                 let (first, second) =
                     (free(motion, now.first, step_s), free(motion, now.second, step_s));
-                let instant = |share: f64| Instant {
-                    roll: at(&motion.roll, share),
-                    rate: at(&motion.rate, share),
-                    first: (at(&first.0, share), at(&first.1, share)),
-                    second: (at(&second.0, share), at(&second.1, share)),
+                let pair = |series: &(Series, Series), share: f64| {
+                    (at(&series.0, share), at(&series.1, share))
+                };
+                let instant = |share: f64| {
+                    let moved = (at(&motion.roll, share), at(&motion.rate, share));
+                    Instant::new(moved, pair(&first, share), pair(&second, share))
                 };
                 path.middles.push(instant(0.5 * piece.share));
                 now = instant(piece.share);
@@ -108,12 +110,11 @@ impl Path {
         let (mut first, mut second) = (0.0, 0.0);
         weights.push((0.0, 0.0));
         let start = &self.nodes[0];
-        let mut left = scaled(start.kernels(), f(start));
+        let mut left = scaled(start.kernels, f(start));
         for ((middle, right), width_s) in
             self.middles.iter().zip(&self.nodes[1..]).zip(&self.widths_s)
         {
-            let (inner, end) =
-                (scaled(middle.kernels(), f(middle)), scaled(right.kernels(), f(right)));
+            let (inner, end) = (scaled(middle.kernels, f(middle)), scaled(right.kernels, f(right)));
             first -= width_s / 6.0 * (left.1 + 4.0 * inner.1 + end.1);
             second += width_s / 6.0 * (left.0 + 4.0 * inner.0 + end.0);
             weights.push((first, second));
@@ -152,7 +153,7 @@ fn scaled(pair: (f64, f64), factor: f64) -> (f64, f64) {
 }
 
 /// The series of a free solution and of its rate over a step [s].
-fn free(motion: &Expansion, from: (f64, f64), step_s: f64) -> ([f64; N_TERMS], [f64; N_TERMS]) {
+fn free(motion: &Expansion, from: (f64, f64), step_s: f64) -> (Series, Series) {
     let (mut value, mut rate) = ([0.0; N_TERMS], [0.0; N_TERMS]);
     (value[0], rate[0]) = from;
     for n in 0..N_TERMS - 1 {

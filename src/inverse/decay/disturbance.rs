@@ -44,6 +44,8 @@ pub struct Disturbance {
 #[derive(Clone)]
 pub struct Columns {
     values: Vec<Vec<f64>>,
+    /// What the fit leaves of the record [rad].
+    residual: Vec<f64>,
     tau: Vec<f64>,
     /// Size of the roll against its largest, sample by sample [-].
     envelope: Vec<f64>,
@@ -71,10 +73,18 @@ impl Columns {
         columns.push(whole);
         Self {
             values: columns,
+            residual: linearised.residual_rad.clone(),
             envelope: linearised.motion.iter().map(share).collect(),
             steps: (Steps::new(&tau), Steps::new(&tau), Steps::new(&tau)),
             tau,
         }
+    }
+
+    /// Correlation of neighbouring residuals of the fit [-].
+    pub fn neighbours_correlate(&self) -> f64 {
+        let product = |(a, b): (&f64, &f64)| a * b;
+        let pairs = self.residual.iter().zip(&self.residual[1..]).map(product).sum::<f64>();
+        pairs / self.residual.iter().map(|r| r * r).sum::<f64>()
     }
 
     /// Number of samples.

@@ -180,9 +180,9 @@ pub fn settle(
         last = (here, step);
         share = 1.0;
         here = moved(&here, &step, 1.0);
-        // After a step worth a thirtieth of a standard deviation the next is worth a thousandth.
+        // After a step of a standard deviation or so the next is a hundredth of one.
         let gain = (total * total - residual * residual).max(0.0).sqrt();
-        if gain < 0.03 * residual / n_samples.sqrt() || gain < 1e-12 * record.scale_rad() {
+        if gain < 1.5 * residual / n_samples.sqrt() || gain < 1e-12 * record.scale_rad() {
             return Ok(here);
         }
     }

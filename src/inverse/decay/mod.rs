@@ -26,7 +26,7 @@ use self::start::first_guess;
 use crate::inverse::Setting;
 use crate::inverse::estimate::Estimate;
 use crate::inverse::identification::{
-    DampingFit, Identification, Method, MomentHistory, Resimulation,
+    DampingFit, HalfCycle, Identification, Method, MomentHistory, Resimulation,
 };
 use crate::inverse::mixture;
 use crate::inverse::observed::Observed;
@@ -47,6 +47,23 @@ pub struct Solved {
     pub linear: Point,
     /// The posterior.
     pub posterior: DecayPosterior,
+}
+
+impl Solved {
+    /// Marginal posterior of one unknown.
+    pub fn unknown(&self, position: usize) -> Estimate {
+        mixture::estimate(&self.posterior.unknown(position))
+    }
+
+    /// The half cycles of a motion of this decay, in order of time.
+    pub fn half_cycles(&self, motion: &MotionPosterior) -> Vec<HalfCycle> {
+        let restoring = Restoring {
+            natural_frequency_rad_s: self.unknown(FREQUENCY).mean,
+            cubic_per_rad2: self.unknown(CUBIC_RESTORING).mean,
+        };
+        let Record { origin_s, time_s, .. } = &self.thinned;
+        half_cycles::half_cycles(*origin_s, time_s, motion, &restoring)
+    }
 }
 
 /// Solves the inverse problem of a decay.
@@ -82,15 +99,10 @@ fn posterior(record: &Record, point: Point) -> DecayPosterior {
 pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, String> {
     let solved = solve(run)?;
     let Solved { record, thinned, linear, posterior } = &solved;
-    let unknown = |position| mixture::estimate(&posterior.unknown(position));
-    let (frequency, zero) = (unknown(FREQUENCY), unknown(ZERO));
-    let initial = (unknown(ROLL), unknown(RATE));
+    let (frequency, zero) = (solved.unknown(FREQUENCY), solved.unknown(ZERO));
+    let initial = (solved.unknown(ROLL), solved.unknown(RATE));
     let motion = moment::motion(posterior);
-    let restoring = Restoring {
-        natural_frequency_rad_s: frequency.mean,
-        cubic_per_rad2: unknown(CUBIC_RESTORING).mean,
-    };
-    let cycles = half_cycles::half_cycles(thinned.origin_s, &thinned.time_s, &motion, &restoring);
+    let cycles = solved.half_cycles(&motion);
     if cycles.len() < 3 {
         return Err(format!("{} half cycles stand clear of the noise, 3 are needed", cycles.len()));
     }

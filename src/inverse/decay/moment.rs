@@ -2,7 +2,7 @@
 
 use super::disturbance::{Disturbance, Misfit};
 use super::fit::N_UNKNOWNS;
-use super::posterior::{DecayPosterior, Weighed};
+use super::posterior::DecayPosterior;
 use crate::inverse::state_space::smoother::Smoothed;
 
 /// Roll [rad] about its zero, roll rate [rad/s] and `U = phi'' + w^2 phi` [rad/s2].
@@ -108,10 +108,18 @@ fn rows(
     rows
 }
 
+/// A solution lighter than this share of the heaviest moves no end of a 95 % band by much, while
+/// its variance would move both: bands are those of the solutions above it.
+const LIGHT: f64 = 0.05;
+
 /// The solutions of each disturbance merged; those without a misfit share one smoothing.
 fn groups(posterior: &DecayPosterior) -> Vec<(Disturbance, Merged)> {
     let mut groups: Vec<(Disturbance, Vec<usize>)> = Vec::new();
-    for (i, weighed) in posterior.solutions.iter().enumerate() {
+    let least = posterior.solutions[0].log_weight + LIGHT.ln();
+    let heavy = posterior.solutions.iter().take_while(|weighed| weighed.log_weight >= least);
+    let mut total = 0.0;
+    for (i, weighed) in heavy.enumerate() {
+        total += weighed.weight();
         let disturbance = posterior.disturbances[weighed.disturbance];
         let same = |d: &Disturbance| {
             *d == disturbance || (d.misfit.is_none() && disturbance.misfit.is_none())
@@ -121,7 +129,6 @@ fn groups(posterior: &DecayPosterior) -> Vec<(Disturbance, Merged)> {
             None => groups.push((disturbance, vec![i])),
         }
     }
-    let total: f64 = posterior.solutions.iter().map(Weighed::weight).sum();
     groups.into_iter().map(|(d, members)| (d, merged(posterior, &members, total))).collect()
 }
 

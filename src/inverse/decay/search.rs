@@ -5,6 +5,10 @@ use super::form::FORMS;
 use super::solution::Plan;
 use crate::inverse::state_space::filter::Filtered;
 
+/// Prior probability that the law leaves a moment, and that the noise remembers: a record that
+/// shows either outweighs this by many orders, and a record that shows neither is not clouded.
+const UNLAWFUL: f64 = 0.05;
+
 /// Correlation of neighbouring samples of a coloured noise [-], each as likely beforehand.
 const CORRELATIONS: [f64; 3] = [0.3, 0.6, 0.85];
 
@@ -14,9 +18,9 @@ const MISFITS: (f64, f64) = (-1.5, 6.0);
 /// Step of the first look at them.
 const COARSE: f64 = 1.25;
 /// The first look ends where the evidence has fallen by this much from its best.
-const FALLEN: f64 = 12.0;
+const FALLEN: f64 = 7.0;
 /// Evidence that a misfit must gain over none before its size and order are looked at closely.
-const PROMISING: f64 = 1.0;
+const PROMISING: f64 = 3.0;
 
 /// A disturbance that stands for its neighbours too.
 pub(super) struct Candidate<'a> {
@@ -47,15 +51,21 @@ impl<'a> Search<'a> {
 
     /// Every disturbance worth weighing.
     pub(super) fn candidates(&self) -> Vec<Candidate<'_>> {
-        let half = 0.5_f64.ln();
-        let coloured = half - (CORRELATIONS.len() as f64).ln();
+        let (lawful, unlawful) = ((1.0 - UNLAWFUL).ln(), UNLAWFUL.ln());
+        let coloured = unlawful - (CORRELATIONS.len() as f64).ln();
         let spacing = self.columns.spacing();
-        let memories = CORRELATIONS.map(|a| (Noise::Coloured(-spacing / a.ln()), coloured));
+        // A memory `a` gains n (a r - a^2/2) over none where neighbours correlate by r.
+        let least = 0.5 * CORRELATIONS[0];
+        let remembers = self.columns.neighbours_correlate() > least;
+        let memories = CORRELATIONS
+            .into_iter()
+            .filter(|_| remembers)
+            .map(|a| (Noise::Coloured(-spacing / a.ln()), coloured));
         let noises: Vec<(Noise, f64)> =
-            std::iter::once((Noise::White, half)).chain(memories).collect();
+            std::iter::once((Noise::White, lawful)).chain(memories).collect();
         let mut all: Vec<Candidate<'_>> = noises
             .iter()
-            .map(|&(noise, prior)| self.candidate(noise, None, prior + half))
+            .map(|&(noise, prior)| self.candidate(noise, None, prior + lawful))
             .collect();
         let best_noise = best(&all).disturbance.noise;
         // A misfit is looked for under white noise, and under a memory where there seems to be one.
@@ -63,10 +73,10 @@ impl<'a> Search<'a> {
             if noise != Noise::White && noise != best_noise {
                 continue;
             }
-            let lawful = all[i].log_likelihood;
-            let log_prior = prior + half - (MISFITS.1 - MISFITS.0).ln();
+            let none = all[i].log_likelihood;
+            let log_prior = prior + unlawful - (MISFITS.1 - MISFITS.0).ln();
             let coarse = self.coarse(noise, 2, log_prior);
-            if best(&coarse).log_likelihood < lawful + PROMISING {
+            if best(&coarse).log_likelihood < none + PROMISING {
                 // Nothing to be smooth or rough: one order stands for all.
                 all.extend(coarse);
                 continue;

@@ -15,6 +15,7 @@ pub mod convergence;
 pub mod convolution;
 pub mod exact;
 pub mod least_squares;
+pub mod plain_fit;
 pub mod settings;
 
 mod chains;
@@ -27,6 +28,7 @@ use std::ops::ControlFlow;
 
 pub use convolution::Convolution;
 pub use least_squares::least_squares;
+pub use plain_fit::plain_fit;
 pub use settings::{ChainSettings, Hyperpriors, PriorPower};
 pub use summary::ChainResult;
 

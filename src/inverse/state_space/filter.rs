@@ -70,6 +70,11 @@ impl<T: Copy> Kept<T> {
         &self.values[self.place[sample] as usize]
     }
 
+    /// Whether two samples have one value.
+    pub fn is_same(&self, a: usize, b: usize) -> bool {
+        self.place[a] == self.place[b]
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.place.len()
@@ -189,8 +194,10 @@ fn spread<const N: usize>(step: &Step<N>, root: &Matrix<N>) -> Matrix<N> {
     triangular_root(&mut columns[..2 * N])
 }
 
-/// Whether the covariance has stopped changing, so that the gains can be kept.
-fn same<const N: usize>(a: &Matrix<N>, b: &Matrix<N>) -> bool {
+/// Whether a covariance, or its inverse, has stopped changing, so that what follows can be kept.
+pub(super) fn same<const N: usize>(a: &Matrix<N>, b: &Matrix<N>) -> bool {
     // A relative change of 1e-13 a step is rounding: the filter forgets within a few periods.
-    a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() <= 1e-13 * b.abs())
+    let size = b.iter().flatten().fold(0.0_f64, |size, b| size.max(b.abs()));
+    let near = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-13 * b.abs().max(1e-3 * size);
+    a.iter().flatten().zip(b.iter().flatten()).all(near)
 }

@@ -70,7 +70,7 @@ pub struct Quadrature {
 
 impl Quadrature {
     /// What a band needs: its ends are right to a thousandth of their distance.
-    pub const BAND: Self = Self { step_sd: 0.8, negligible: 1e-4 };
+    pub const BAND: Self = Self { step_sd: 1.0, negligible: 1e-3 };
     /// As many digits as the arithmetic carries.
     pub const EXACT: Self = Self { step_sd: 0.4, negligible: 1e-15 };
 }
@@ -173,27 +173,25 @@ impl<F> MomentProblem<'_, F> {
     {
         let at = |x: f64| self.node::<N, T>(x);
         let (low, high) = LOG_INTENSITY_RANGE;
-        let heavier = |a: Node, b: Node| if b.log_weight > a.log_weight { b } else { a };
-        let scan = (1..=12).map(|i| at(low + f64::from(i) * (high - low) / 12.0));
-        let best = scan.fold(at(low), heavier);
-        // Newton steps on the parabola through three points find the mode and its width.
-        let mut mode = best.log_intensity;
+        let mut top = Self::uphill(&at);
         let mut width: f64 = 1.0;
-        for _ in 0..3 {
+        for _ in 0..2 {
+            // Newton's step on the parabola through three points finds mode and width.
+            let mode = top.log_intensity;
             let reach = 0.5 * width;
-            let (left, here, right) = (at(mode - reach), at(mode), at(mode + reach));
+            let (left, right) = (at(mode - reach), at(mode + reach));
             let slope = (right.log_weight - left.log_weight) / (2.0 * reach);
             let bend =
-                (right.log_weight - 2.0 * here.log_weight + left.log_weight) / (reach * reach);
+                (right.log_weight - 2.0 * top.log_weight + left.log_weight) / (reach * reach);
             if bend >= 0.0 {
                 break;
             }
             width = (-bend).sqrt().recip().clamp(0.01, 2.0);
-            mode = (mode - (slope / bend).clamp(-1.5, 1.5)).clamp(low, high);
+            top = at((mode - (slope / bend).clamp(-1.5, 1.5)).clamp(low, high));
         }
+        let (middle, mode) = (top, top.log_intensity);
         // A trapezoidal rule over a bell curve gains digits with the square of its fineness.
         let step = self.quadrature.step_sd * width;
-        let middle = at(mode);
         let least = middle.log_weight + self.quadrature.negligible.ln();
         let side = |sign: f64| {
             let heavy = |node: &Node| node.log_weight > least;
@@ -213,6 +211,30 @@ impl<F> MomentProblem<'_, F> {
         let top = nodes.iter().map(|n| n.log_weight).fold(f64::NEG_INFINITY, f64::max);
         let total: f64 = nodes.iter().map(|n| (n.log_weight - top).exp()).sum();
         Weighed { nodes, log_evidence: top + (total * step).ln() }
+    }
+
+    /// A node near the mode, by strides uphill from the middle of the range.
+    fn uphill(at: &impl Fn(f64) -> Node) -> Node {
+        const STRIDE: f64 = 2.0;
+        let (low, high) = LOG_INTENSITY_RANGE;
+        let start = at(0.5 * (low + high));
+        let (left, right) = (at(start.log_intensity - STRIDE), at(start.log_intensity + STRIDE));
+        let (mut best, sign) =
+            if right.log_weight > left.log_weight { (right, STRIDE) } else { (left, -STRIDE) };
+        if best.log_weight < start.log_weight {
+            return start;
+        }
+        loop {
+            let next = best.log_intensity + sign;
+            if !(low..=high).contains(&next) {
+                return best;
+            }
+            let node = at(next);
+            if node.log_weight < best.log_weight {
+                return best;
+            }
+            best = node;
+        }
     }
 
     fn node<const N: usize, T: Transition<N>>(&self, log_intensity: f64) -> Node

@@ -4,7 +4,7 @@
 //! Estimation, 1977, ch. X): an adjoint runs back along the filter's trail, so no covariance is
 //! inverted.
 
-use super::filter::{Column, Filtered, Trail, filter};
+use super::filter::{Column, Filtered, Trail, filter, same};
 use super::matrix::{Matrix, apply, apply_transposed, congruence, identity};
 use super::transition::Transition;
 
@@ -62,16 +62,26 @@ fn run_back<const N: usize>(trail: &Trail<N>, n_columns: usize, places: [usize; 
     let mut information: Matrix<N> = [[0.0; N]; N];
     let mut variances = vec![[0.0; 3]; n_samples];
     let mut smoothed = vec![[0.0; 3]; n_samples * n_columns];
+    let mut kept = identity::<N>();
+    // Where gain and information repeat themselves, so do the variances.
+    let mut settled = false;
     for i in (0..n_samples).rev() {
         let root = trail.roots.at(i);
         let variance = 1.0 + root[0][0] * root[0][0];
-        // I - K H: the gain acts on the roll alone.
-        let mut kept = identity::<N>();
-        for (row, from) in kept.iter_mut().zip(root) {
-            row[0] -= from[0] * root[0][0] / variance;
+        let again = i + 1 < n_samples && trail.roots.is_same(i, i + 1);
+        settled &= again && trail.steps.is_same(i, i + 1);
+        if !again {
+            // I - K H: the gain acts on the roll alone.
+            kept = identity::<N>();
+            for (row, from) in kept.iter_mut().zip(root) {
+                row[0] -= from[0] * root[0][0] / variance;
+            }
         }
-        information = congruence(&kept, &information);
-        information[0][0] += 1.0 / variance;
+        let before = information;
+        if !settled {
+            information = congruence(&kept, &information);
+            information[0][0] += 1.0 / variance;
+        }
         let here = i * n_columns..(i + 1) * n_columns;
         let (states, innovations) = (&trail.states[here.clone()], &trail.innovations[here.clone()]);
         for (c, (adjoint, out)) in adjoints.iter_mut().zip(&mut smoothed[here]).enumerate() {
@@ -80,13 +90,20 @@ fn run_back<const N: usize>(trail: &Trail<N>, n_columns: usize, places: [usize; 
             let pulled = apply(root, &apply_transposed(root, adjoint));
             *out = places.map(|k| states[c][k] - pulled[k]);
         }
-        variances[i] = places.map(|k| state_variance(root, &information, k));
+        variances[i] = if settled {
+            variances[i + 1]
+        } else {
+            places.map(|k| state_variance(root, &information, k))
+        };
         if i > 0 {
             let step = trail.steps.at(i);
             for adjoint in &mut adjoints {
                 *adjoint = apply_transposed(&step.f, adjoint);
             }
-            information = congruence(&step.f, &information);
+            if !settled {
+                information = congruence(&step.f, &information);
+                settled = again && same(&before, &information);
+            }
         }
     }
     Smoothed { columns: smoothed, n_columns, variances }

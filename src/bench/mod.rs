@@ -1,0 +1,13 @@
+//! What the program can do, measured: how often its bands hold the truth, how fast it is.
+
+pub mod calibration;
+pub mod drawn_run;
+pub mod paper_hyperpriors;
+pub mod ranks;
+pub mod speed;
+
+mod machine;
+mod stopwatch;
+
+pub use calibration::{Calibration, calibrate};
+pub use machine::machine;
