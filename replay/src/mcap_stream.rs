@@ -113,6 +113,9 @@ impl McapStream {
             if !matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) {
                 continue;
             }
+            if opcode == op::MESSAGE && !self.is_ours(self.records.body()) {
+                continue;
+            }
             match parse_record(opcode, self.records.body()) {
                 Ok(Record::Schema { header, data }) => {
                     self.schemas.insert(header.id, (header.name, data.into_owned()));
@@ -139,6 +142,12 @@ impl McapStream {
         }
         self.ended = true;
         Ok(())
+    }
+
+    /// Whether a message may be of the topic, by the channel that it starts with: most are not.
+    fn is_ours(&self, message: &[u8]) -> bool {
+        let Some(channel) = message.first_chunk() else { return true };
+        self.channels.contains_key(&u16::from_le_bytes(*channel))
     }
 
     fn add_channel(&mut self, channel: &mcap::records::Channel) -> Result<(), ReplayError> {

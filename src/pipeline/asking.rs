@@ -17,12 +17,19 @@ pub(super) struct Asking<'a> {
     campaign: &'a Campaign,
     options: &'a Options,
     workers: &'a Workers,
+    /// Number of the next run, recordings far apart.
     n_runs: u64,
 }
 
 impl<'a> Asking<'a> {
-    pub(super) fn new(campaign: &'a Campaign, options: &'a Options, workers: &'a Workers) -> Self {
-        Self { campaign, options, workers, n_runs: 0 }
+    /// For the recording at `index`: its runs' seeds depend on no other recording.
+    pub(super) fn new(
+        campaign: &'a Campaign,
+        options: &'a Options,
+        workers: &'a Workers,
+        index: usize,
+    ) -> Self {
+        Self { campaign, options, workers, n_runs: (index as u64) << 32 }
     }
 
     /// Where the answer for a run will arrive.

@@ -12,6 +12,7 @@ mod histories;
 mod names;
 mod overview;
 mod play;
+mod read_ahead;
 mod survey;
 mod workers;
 
@@ -30,7 +31,7 @@ pub use names::labels;
 pub use survey::{Surveyed, survey};
 
 use collect::Collector;
-use play::Heard;
+use play::{Heard, size_bytes};
 use workers::Workers;
 
 /// How a campaign is replayed.
@@ -96,15 +97,18 @@ pub fn replay(
     on_run: &mut dyn FnMut(&IdentifiedRun, &Overview) -> Result<(), ListenerError>,
 ) -> Result<Results, PipelineError> {
     let (heard, queue) = mpsc::sync_channel(QUEUE_LENGTH);
+    let sizes: Vec<u64> = campaign.recordings.iter().map(size_bytes).collect();
+    let bytes_total = sizes.iter().sum();
     thread::scope(|scope| {
         let workers = Workers::start(scope);
-        scope.spawn(move || play::campaign(campaign, options, &workers, &heard));
+        scope.spawn(move || read_ahead::campaign(campaign, options, &workers, &heard));
         let mut collector = Collector::new(campaign);
         for message in queue {
             match message? {
-                Heard::Read { index, bytes_read, bytes_total } => progress(Progress::Read {
+                Heard::Covered { .. } => {}
+                Heard::Read { index, bytes_read } => progress(Progress::Read {
                     recording: &campaign.recordings[index].name,
-                    bytes_read,
+                    bytes_read: sizes[..index].iter().sum::<u64>() + bytes_read,
                     bytes_total,
                     n_runs: collector.n_runs(),
                 }),

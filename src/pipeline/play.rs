@@ -1,4 +1,4 @@
-//! Playing the recordings of a campaign one after the other into the run finder.
+//! Playing one recording of a campaign into the run finder.
 
 use std::sync::mpsc::{Receiver, SyncSender};
 use std::thread;
@@ -8,7 +8,6 @@ use devices::{Device, Quantity, Reading, Sample};
 use replay::{Note, Player};
 
 use super::asking::Asking;
-use super::claims::Claims;
 use super::overview::OverviewBuilder;
 use super::workers::{Identified, Workers};
 use super::{Options, PipelineError};
@@ -16,10 +15,12 @@ use crate::campaign::{Campaign, Recording};
 use crate::results::Overview;
 use crate::run::{Event, Limits, Rejection, RunFinder};
 
-/// What the playing thread tells the collecting one.
+/// What a playing thread tells the collecting one.
 pub(super) enum Heard {
-    /// A batch of samples has been read.
-    Read { index: usize, bytes_read: u64, bytes_total: u64 },
+    /// The next batch of samples covers this stretch [s] of absolute time.
+    Covered { start_s: f64, end_s: f64 },
+    /// A batch of samples has been read; bytes of this recording so far.
+    Read { index: usize, bytes_read: u64 },
     /// A run has ended and is being identified; the overview shows the recording up to here.
     Run { index: usize, identified: Receiver<Identified>, overview: Overview },
     /// A stretch will not be used.
@@ -28,55 +29,58 @@ pub(super) enum Heard {
     Ended { overview: Overview, notes: Vec<Note> },
 }
 
-type Queue = SyncSender<Result<Heard, PipelineError>>;
+pub(super) type Queue = SyncSender<Result<Heard, PipelineError>>;
 
 /// The listener has gone away, so there is nobody to play for.
-struct Unheard;
+pub(super) struct Unheard;
 
-/// Plays every recording; stops at the first that cannot be read, or when nobody listens.
-pub(super) fn campaign(campaign: &Campaign, options: &Options, workers: &Workers, queue: &Queue) {
-    let mut asking = Asking::new(campaign, options, workers);
-    let mut claims = Claims::default();
-    let bytes_total = campaign.recordings.iter().map(size_bytes).sum();
-    let mut bytes_before = 0;
-    for (index, recording) in campaign.recordings.iter().enumerate() {
-        let mut listening = Listening {
-            index,
-            recording: &recording.name,
-            finder: RunFinder::new(limits(campaign, recording)),
-            events: Vec::new(),
-            overview: OverviewBuilder::default(),
-            drive_is_moment: false,
-            asking: &mut asking,
-            queue,
-        };
-        let mut heard = Ok(());
-        let mut pace = Pace { speed: options.speed, last_s: None };
-        let played = play(campaign, recording, &mut claims, &mut |batch, bytes_read| {
-            pace.wait(batch);
-            heard = listening.batch(batch).and_then(|()| {
-                let bytes_read = bytes_before + bytes_read;
-                listening.tell(Heard::Read { index, bytes_read, bytes_total })
-            });
-            heard.is_ok()
-        });
-        let heard = heard.and_then(|()| match played {
-            Ok(notes) => listening.end(notes),
-            // The receiver ends at an error, so whether it was still there does not matter.
-            Err(error) => queue.send(Err(error)).map_err(|_| Unheard).and(Err(Unheard)),
-        });
-        if heard.is_err() {
-            return;
-        }
-        bytes_before += size_bytes(recording);
-    }
+/// Plays one recording until it ends, cannot be read further, or nobody listens.
+pub(super) fn recording(
+    campaign: &Campaign,
+    options: &Options,
+    workers: &Workers,
+    index: usize,
+    queue: &Queue,
+) {
+    let recording = &campaign.recordings[index];
+    let mut asking = Asking::new(campaign, options, workers, index);
+    let mut listening = Listening {
+        index,
+        recording: &recording.name,
+        finder: RunFinder::new(limits(campaign, recording)),
+        events: Vec::new(),
+        overview: OverviewBuilder::default(),
+        drive_is_moment: false,
+        asking: &mut asking,
+        queue,
+    };
+    let mut heard = Ok(());
+    let mut pace = Pace { speed: options.speed, last_s: None };
+    let covered = |start_s, end_s| {
+        // A listener that is gone is noticed at the next word to it.
+        drop(queue.send(Ok(Heard::Covered { start_s, end_s })));
+        Ok(())
+    };
+    let played = play(campaign, recording, &mut { covered }, &mut |batch, bytes_read| {
+        pace.wait(batch);
+        heard =
+            listening.batch(batch).and_then(|()| listening.tell(Heard::Read { index, bytes_read }));
+        heard.is_ok()
+    });
+    let heard = heard.and_then(|()| match played {
+        Ok(notes) => listening.end(notes),
+        Err(error) => queue.send(Err(error)).map_err(|_| Unheard),
+    });
+    // Whoever went away needs no answer.
+    drop(heard);
 }
 
-/// Hands a recording to `listener` batch by batch until it ends or the listener has had enough.
+/// Hands a recording to `listener` batch by batch until it ends or the listener has had enough;
+/// `covered` hears first which stretch [s] of absolute time each batch covers.
 pub(super) fn play(
     campaign: &Campaign,
     recording: &Recording,
-    claims: &mut Claims,
+    covered: &mut dyn FnMut(f64, f64) -> Result<(), PipelineError>,
     listener: &mut dyn FnMut(&[Sample], u64) -> bool,
 ) -> Result<Vec<Note>, PipelineError> {
     let mut player = Player::open(&recording.name, &recording.files, &campaign.columns)?;
@@ -87,12 +91,11 @@ pub(super) fn play(
         let reading = player.read(&mut batch);
         if let ([first, ..], [.., last]) = (&batch[..], &batch[..]) {
             let zero_s = player.zero_log_time_ns() as f64 / 1e9;
-            claims.extend(&recording.name, zero_s + first.time_s, zero_s + last.time_s)?;
+            covered(zero_s + first.time_s, zero_s + last.time_s)?;
         }
         let (read, total) = player.progress();
         let share = read as f64 / total.max(1) as f64;
         if !listener(&batch, (share * size_bytes as f64) as u64) || reading? == Reading::Ended {
-            claims.end_recording();
             return Ok(player.notes().to_vec());
         }
     }

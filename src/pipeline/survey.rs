@@ -35,7 +35,8 @@ pub fn survey(
     for recording in &campaign.recordings {
         let (mut start_s, mut end_s) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut counts = Quantity::ALL.map(|quantity| (quantity, 0));
-        let played = play(campaign, recording, &mut claims, &mut |batch, bytes_read| {
+        let mut covered = |start_s, end_s| claims.extend(&recording.name, start_s, end_s);
+        let played = play(campaign, recording, &mut covered, &mut |batch, bytes_read| {
             for sample in batch {
                 start_s = start_s.min(sample.time_s);
                 end_s = end_s.max(sample.time_s);
