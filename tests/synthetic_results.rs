@@ -11,9 +11,10 @@ use rolltank::campaign::{Campaign, Recording, Tank};
 use rolltank::hull::{Hull, Water};
 use rolltank::inverse::estimate::Estimate;
 use rolltank::inverse::identification::{
-    Chain, DampingFit, EquivalentDamping, ForcedResponse, FroudeLaw, HalfCycle, Identification,
-    Method, MomentHistory, Resimulation, Trace,
+    Beliefs, Chain, CurvePoint, DampingFit, EquivalentDamping, ForcedResponse, FormBelief,
+    FroudeLaw, HalfCycle, Identification, Method, MomentHistory, Resimulation, Trace,
 };
+
 use rolltank::results::{IdentifiedRun, Overview, RejectedStretch, Results};
 use rolltank::roll::exciting_moment::{Arm, Exciter};
 use rolltank::run::{Run, RunEnd, RunKind, Series, Still};
@@ -152,8 +153,8 @@ fn identified(
         },
         equivalent_damping: equivalent_damping(truth, amplitude),
         half_cycles: half_cycles(truth, &time_s, &motion, random),
-        damping_curve: Vec::new(),
-        beliefs: None,
+        damping_curve: if forced { Vec::new() } else { damping_curve(truth) },
+        beliefs: (!forced).then(|| beliefs(truth)),
         moment: moment(truth, &time_s, &motion, &measured, random),
         resimulation: Resimulation {
             time_s: time_s.clone(),
@@ -218,6 +219,35 @@ fn equivalent_damping(truth: &Truth, amplitude_max_rad: f64) -> Vec<EquivalentDa
             }
         })
         .collect()
+}
+
+/// The true law at some rates, with a band of a hundredth.
+fn damping_curve(truth: &Truth) -> Vec<CurvePoint> {
+    (0..=10)
+        .map(|i| {
+            let rate_rad_per_s = 0.1 * f64::from(i);
+            let mean = truth.b1 * rate_rad_per_s + truth.b3 * rate_rad_per_s.powi(3);
+            CurvePoint { rate_rad_per_s, damping_per_s2: Estimate::normal(mean, 0.01 * mean) }
+        })
+        .collect()
+}
+
+fn beliefs(truth: &Truth) -> Beliefs {
+    let form =
+        |equation, probability, coefficients| FormBelief { equation, probability, coefficients };
+    let b1 = vec![("b1", "1/s", Estimate::normal(truth.b1, 0.01 * truth.b1))];
+    Beliefs {
+        forms: vec![
+            form("b1 phi' + b3 phi'^3", 0.93, b1),
+            form("a smooth odd curve", 0.0, Vec::new()),
+        ],
+        cubic_restoring: 0.04,
+        k3_per_rad2: Estimate::normal(0.01, 0.05),
+        misfit_orders: [0.0, 0.02, 0.0],
+        coloured_noise: 0.0,
+        quantum_rad: Some(1e-4),
+        n_effective: 1200.0,
+    }
 }
 
 fn half_cycles(

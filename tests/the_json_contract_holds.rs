@@ -134,3 +134,25 @@ fn damping_is_written_in_the_units_of_the_field_too() {
         assert!((written / expected - 1.0).abs() < 1e-12, "{key}: {written}, not {expected}");
     }
 }
+
+#[test]
+fn a_decay_tells_the_forms_of_its_law_and_a_forced_run_has_none() {
+    let results = synthetic_results::results();
+    let document = parsed(&results);
+    for (run, written) in results.runs.iter().zip(document["runs"].as_array().unwrap()) {
+        let Some(beliefs) = &run.identification.beliefs else {
+            assert!(written["beliefs"].is_null() && written["damping_curve"] == json!([]));
+            continue;
+        };
+        let form = &written["beliefs"]["forms"][0];
+        assert_eq!(form["equation"], beliefs.forms[0].equation);
+        assert_eq!(form["probability"], read_back(beliefs.forms[0].probability));
+        let (symbol, unit, value) = beliefs.forms[0].coefficients[0];
+        assert_eq!(form["coefficients"][0]["symbol"], symbol);
+        assert_eq!(form["coefficients"][0]["unit"], unit);
+        assert_eq!(form["coefficients"][0]["value"], read_back(value));
+        let last = run.identification.damping_curve.last().expect("a decay has a curve");
+        let written = written["damping_curve"].as_array().unwrap().last().unwrap();
+        assert_eq!(written["value"], read_back(last.damping_per_s2));
+    }
+}

@@ -3,6 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
+use super::estimate::Estimate;
 use super::forced::response::SteadyResponse;
 use crate::run::Run;
 
@@ -33,23 +34,36 @@ pub(super) fn response(
     restoring_n_m_per_rad: f64,
 ) -> Result<(), String> {
     let inertia = response.inertia_kg_m2.mean;
-    let natural_rad_s = (restoring_n_m_per_rad / inertia).sqrt();
-    let share = response.roll.frequency_rad_s.mean / natural_rad_s;
+    let damping_per_s = response.work_damping_n_m_s.scaled(1.0 / inertia);
+    driven(inertia, restoring_n_m_per_rad, response.roll.frequency_rad_s.mean, &damping_per_s)
+}
+
+/// Refuses an inertia [kg m2] or an equivalent damping [1/s] that no model has, where it swings at
+/// `frequency_rad_s` [rad/s].
+pub(super) fn driven(
+    inertia_kg_m2: f64,
+    restoring_n_m_per_rad: f64,
+    frequency_rad_s: f64,
+    damping_per_s: &Estimate,
+) -> Result<(), String> {
+    let natural_rad_s = (restoring_n_m_per_rad / inertia_kg_m2).sqrt();
+    let share = frequency_rad_s / natural_rad_s;
     if !FREQUENCY_SHARE.contains(&share) {
         return Err(format!(
-            "an inertia of {inertia:.3} kg m2 puts the excitation at {share:.2} times the natural \
-             frequency, outside {} to {} ({WRONG_UNIT})",
+            "an inertia of {inertia_kg_m2:.3} kg m2 puts the excitation at {share:.2} times the \
+             natural frequency, outside {} to {} ({WRONG_UNIT})",
             FREQUENCY_SHARE.start(),
             FREQUENCY_SHARE.end()
         ));
     }
-    let ratio = |damping_n_m_s: f64| damping_n_m_s / (2.0 * inertia * natural_rad_s);
-    let work = &response.work_damping_n_m_s;
+    let ratio = |damping_per_s: f64| damping_per_s / (2.0 * natural_rad_s);
     // The band counts: noise may well hide the work of a rod that was weak.
-    if ratio(work.hi95) < *DAMPING_RATIO.start() || ratio(work.lo95) > *DAMPING_RATIO.end() {
+    if ratio(damping_per_s.hi95) < *DAMPING_RATIO.start()
+        || ratio(damping_per_s.lo95) > *DAMPING_RATIO.end()
+    {
         return Err(format!(
             "the work of the rod makes a damping ratio of {:.2e}, outside {} to {} ({WRONG_UNIT})",
-            ratio(work.mean),
+            ratio(damping_per_s.mean),
             DAMPING_RATIO.start(),
             DAMPING_RATIO.end()
         ));

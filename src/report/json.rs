@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::field_units::FieldUnits;
+use super::json_beliefs::{BeliefsJson, CurvePointJson};
 use crate::campaign::Campaign;
 use crate::inverse::estimate::Estimate;
 use crate::inverse::identification::{Chain, ForcedResponse, FroudeLaw, HalfCycle, Method};
@@ -75,6 +76,8 @@ struct RunJson<'a> {
     b1_b3_correlation: f64,
     equivalent_damping_per_s: Vec<EquivalentDampingJson>,
     half_cycles: Vec<HalfCycleJson>,
+    damping_curve: Vec<CurvePointJson>,
+    beliefs: Option<BeliefsJson>,
     resimulation_rmse_deg: f64,
     inertia_kg_m2: Option<Estimate>,
     inertia_used_kg_m2: Estimate,
@@ -108,6 +111,8 @@ impl<'a> RunJson<'a> {
             b1_b3_correlation: identification.damping.correlation,
             equivalent_damping_per_s: EquivalentDampingJson::all(run, &units),
             half_cycles: identification.half_cycles.iter().map(HalfCycleJson::new).collect(),
+            damping_curve: identification.damping_curve.iter().map(CurvePointJson::new).collect(),
+            beliefs: identification.beliefs.as_ref().map(BeliefsJson::new),
             resimulation_rmse_deg: identification.resimulation.rmse_rad.to_degrees(),
             inertia_kg_m2: identification.inertia_kg_m2,
             inertia_used_kg_m2: units.inertia_kg_m2(),

@@ -8,6 +8,7 @@ mod field_units;
 pub(crate) mod figure;
 mod glossary;
 mod json;
+mod json_beliefs;
 mod notation;
 mod number;
 mod remark;

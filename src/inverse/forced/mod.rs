@@ -1,9 +1,12 @@
 //! One forced run, from its samples to everything that they say.
 
 pub(super) mod drive;
+mod driven;
 pub mod harmonic;
+mod moment;
 pub mod response;
 pub mod steady;
+mod transient;
 
 use self::drive::Drive;
 use self::response::SteadyResponse;
@@ -20,8 +23,11 @@ use crate::inverse::state_space::history::{Reference, state_posterior};
 use crate::roll::damping::cubic_weight;
 use crate::run::{Run, RunKind, Series};
 
-/// Identifies a forced run.
+/// Identifies a forced run: from its harmonics where the excitation repeats, else from its course.
 pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, String> {
+    if run.excitation_rad_s.is_none() {
+        return transient::identify(run, setting);
+    }
     let restoring = setting.restoring_n_m_per_rad;
     let response = SteadyResponse::of(run, restoring, setting.exciter.as_ref())?;
     plausible::response(&response, restoring)?;

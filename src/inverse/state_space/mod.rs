@@ -5,6 +5,7 @@
 //! turns the states into the moment `U` with its band.
 
 pub mod coloured;
+pub mod damped;
 pub mod filter;
 pub mod history;
 pub mod matern;

@@ -19,15 +19,16 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
     }
     let columns = [
         ("A", "deg"),
-        ("b_{eq} law", "1/s"),
+        ("b_{eq}", "1/s"),
         ("b_{eq} local", "1/s"),
-        ("B_{eq} law", "N m s"),
+        ("B_{eq}", "N m s"),
         ("B̂₄₄", "–"),
         ("ζ", "–"),
         ("Δφ/φ_{m} half cycle", "–"),
     ];
-    let caption = "Equivalent damping; all but the second b_{eq} are from the fitted law. For the \
-                   full-cycle decrement (p–q) double the last column.";
+    let caption = "Equivalent damping of all forms of law together, or of the half cycles where no \
+                   law holds; the second b_{eq} is always theirs. For the full-cycle decrement \
+                   (p–q) double the last column.";
     Some(section(
         "equivalent-damping-section",
         "Equivalent damping",
@@ -106,8 +107,9 @@ fn figure(page: &RunPage) -> Option<Figure> {
             Axis::new("roll amplitude A [deg]").holding(0.0),
         )
         .caption(
-            "Points use no law; bars that leave the frame end at its edge. The law is drawn \
-             up to the largest roll of the run, with ω the frequency at which the model rolls.",
+            "Points are the energy lost from peak to peak of the posterior motion; bars that leave \
+             the frame end at its edge. The cubic law is drawn up to the largest roll of the run, \
+             with ω the frequency at which the model rolls.",
         )
         .panel(panel),
     )

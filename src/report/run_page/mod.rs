@@ -5,6 +5,7 @@ mod coefficients;
 mod equivalent_damping;
 mod facts;
 mod forced;
+mod forms;
 mod law_gaps;
 mod least_squares;
 mod moment;
@@ -25,7 +26,7 @@ use crate::results::{IdentifiedRun, Overview, RejectedStretch};
 use crate::run::RunKind;
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&RunPage) -> Option<Markup>; 15] = [
+const PARTS: [fn(&RunPage) -> Option<Markup>; 16] = [
     law_gaps::part,
     facts::part,
     record::part,
@@ -33,6 +34,7 @@ const PARTS: [fn(&RunPage) -> Option<Markup>; 15] = [
     moment::part,
     scatter::part,
     equivalent_damping::part,
+    forms::part,
     coefficients::part,
     resimulation::part,
     forced::part,

@@ -3,6 +3,7 @@
 use maud::Markup;
 
 use super::RunPage;
+use crate::inverse::identification::CurvePoint;
 use crate::report::document::section;
 use crate::report::field_units::fitted_damping;
 use crate::report::figure::{Axis, Figure, Hue, Ink, Panel, Shape};
@@ -50,6 +51,7 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
             &law.iter().map(|at| at.mean).collect::<Vec<_>>(),
             Ink::new(Hue::Vermillion).wide(1.8).named("b₁ φ′ + b₃ φ′³"),
         );
+    let panel = with_curve(page, panel);
     let figure =
         Figure::new("scatter", "Damping against roll rate", Axis::new("roll rate φ′ [rad/s]"))
             .caption(
@@ -58,6 +60,29 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
             )
             .panel(panel);
     Some(section("scatter-section", "Damping against roll rate", &figure.markup()))
+}
+
+/// Adds the damping curve of all forms of law together, where there is one.
+fn with_curve(page: &RunPage, panel: Panel) -> Panel {
+    let curve = &page.identification().damping_curve;
+    if curve.is_empty() {
+        return panel;
+    }
+    // The damping is odd in the rate: the other half mirrors this one.
+    let mirrored = |of: &dyn Fn(&CurvePoint) -> (f64, f64)| -> Vec<f64> {
+        let below = curve.iter().skip(1).rev().map(|point| -of(point).1);
+        below.chain(curve.iter().map(|point| of(point).0)).collect()
+    };
+    let rate = mirrored(&|point| (point.rate_rad_per_s, point.rate_rad_per_s));
+    let ends = |point: &CurvePoint| (point.damping_per_s2.lo95, point.damping_per_s2.hi95);
+    let lo = mirrored(&|point| ends(point));
+    let hi = mirrored(&|point| (ends(point).1, ends(point).0));
+    let mean = mirrored(&|point| (point.damping_per_s2.mean, point.damping_per_s2.mean));
+    panel.band(&rate, &lo, &hi, Ink::new(Hue::Green).named("95 % band whatever the form")).line(
+        &rate,
+        &mean,
+        Ink::new(Hue::Green).named("all forms of law together"),
+    )
 }
 
 fn part_of(values: &[f64], kept: impl Fn(usize) -> bool) -> Vec<f64> {
