@@ -13,6 +13,7 @@ mod kvlcc2_is_identified_as_published;
 mod long_campaigns_stay_small;
 mod run_finding_any_stream;
 mod run_finding_decays;
+mod run_finding_driven;
 mod run_finding_false_alarms;
 mod run_finding_forced;
 mod run_finding_kvlcc2;

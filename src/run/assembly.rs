@@ -31,6 +31,8 @@ pub(super) struct Stretch<'a> {
     pub(super) end: RunEnd,
     /// Its half cycles, those after the end included.
     pub(super) cycles: &'a [Cycle],
+    /// Whether a forced roll repeats itself.
+    pub(super) repeats: bool,
     /// Whether it began without a hold or a rest before it, and ended by another touch.
     pub(super) between_touches: bool,
 }
@@ -107,7 +109,7 @@ impl Stretch<'_> {
             return Err("no roll sample in the stretch".to_owned());
         };
         let driven = records.drive.is_recorded();
-        let excitation_rad_s = (self.kind == RunKind::Forced)
+        let excitation_rad_s = (self.kind == RunKind::Forced && self.repeats)
             .then(|| {
                 let track = if driven { &records.drive.track } else { &records.roll };
                 forced::frequency_rad_s(used, track)

@@ -4,7 +4,8 @@
 //! (`noise`) is known. The roll is cut into half cycles between turning points that stand out of
 //! that noise (`half_cycles`); the speed into steady stretches (`carriage_pass`). A state
 //! machine (`motion`) joins half cycles into a decay as long as `decay` finds each one where
-//! the last ones lead, and into a forced run as long as `forced` finds it steady. When a run has
+//! the last ones lead, and into a forced run as long as `forced` finds it steady; what the rod
+//! drives otherwise, `driven` gathers. When a run has
 //! ended, `usable_end` looks for the instant at which the samples left their course.
 //!
 //! Nothing here reads a clock or a file or draws a number, and what is told depends only on the
@@ -16,6 +17,7 @@ mod bins;
 mod carriage_pass;
 mod decay;
 mod drive;
+mod driven;
 mod finder;
 mod forced;
 mod half_cycles;
@@ -48,7 +50,7 @@ pub struct Series {
 pub enum RunKind {
     /// Heeled, released, left to roll.
     Decay,
-    /// Rolled by the oscillator rod, steady at one frequency.
+    /// Rolled by the oscillator rod, at one frequency or in any other course.
     Forced,
 }
 
@@ -105,7 +107,8 @@ pub struct Run {
     pub drive: Series,
     /// The still stretch before the run, when there was one.
     pub still: Option<Still>,
-    /// Frequency of the excitation [rad/s] of a forced run, as the run finder saw it.
+    /// Frequency of the excitation [rad/s] of a forced run, as the run finder saw it; none where
+    /// the excitation does not repeat.
     pub excitation_rad_s: Option<f64>,
 }
 

@@ -8,6 +8,7 @@ use super::assembly::Stretch;
 use super::carriage_pass::Passage;
 use super::decay;
 use super::decay::Verdict;
+use super::driven::Driven;
 use super::forced;
 use super::forced::Cycle;
 use super::half_cycles::HalfCycle;
@@ -42,6 +43,8 @@ pub(super) struct Motion {
     /// Half cycles after a forced run that may be a single outlier.
     doubtful: Vec<Cycle>,
     unused: Option<Unused>,
+    /// Roll under the rod that has not become steady.
+    driven: Driven,
     trust: Trust,
     /// The model has rolled otherwise since it was last still.
     stirred: bool,
@@ -56,7 +59,8 @@ pub(super) struct Motion {
 impl Motion {
     /// Time [s] from which samples are still needed.
     pub(super) fn needed_from_s(&self) -> Option<f64> {
-        self.cycles.first().map(|c| c.half.start.time_s)
+        let run_s = self.cycles.first().map(|c| c.half.start.time_s);
+        run_s.into_iter().chain(self.driven.needed_from_s()).reduce(f64::min)
     }
 
     /// Takes the next half cycle.
@@ -89,6 +93,10 @@ impl Motion {
         if self.state != State::Searching && self.cycles.first().is_some_and(long) {
             self.end(RunEnd::TooLong, end_s, records, limits, events);
         }
+        if self.driven.needed_from_s().is_some_and(|start_s| end_s - start_s > RUN_MAX_S) {
+            let mut closer = Closer { records, limits, events };
+            self.close_driven(RunEnd::TooLong, end_s, &mut closer);
+        }
     }
 
     /// The model is still, the record has a hole, or it ended: whatever was under way ends.
@@ -109,6 +117,7 @@ impl Motion {
                 _ => self.stop(end, end_s, &mut closer),
             }
         }
+        self.close_driven(end, end_s, &mut closer);
         self.flush(f64::INFINITY, &mut closer);
         *self = Self::default();
         if end == RunEnd::Gap {
@@ -144,6 +153,10 @@ impl Motion {
     fn search(&mut self, cycle: Cycle, closer: &mut Closer) {
         self.trust.note(&self.cycles, &cycle, closer.records);
         let distrust = self.trust.distrust();
+        if !self.driven.goes_on(&cycle) {
+            let end = if cycle.steady { RunEnd::ExcitationChanged } else { RunEnd::PassEnded };
+            self.close_driven(end, cycle.half.start.time_s, closer);
+        }
         self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle, distrust)).extend(&cycle);
         if !cycle.is_driven() {
             self.rod_on = false;
@@ -155,11 +168,13 @@ impl Motion {
         let ripple = closer.records.ripple();
         let recorded = closer.records.drive.is_recorded();
         if self.trust.is_spent(closer.records, cycle.half.end.time_s) {
+            self.driven = Driven::default();
             return;
         }
         if let Some(start) = forced::settled(&self.cycles, recorded, ripple) {
             self.begin(State::Forced, start, closer);
         } else if distrust.is_none()
+            && !self.driven.is_at_work()
             && let Some(start) = self.decay_start(closer)
         {
             self.n_drops_left = if decay::is_rocked_up(&self.halves(), start) { 2 } else { 0 };
@@ -172,9 +187,32 @@ impl Motion {
         self.before.clear();
         self.before.extend(self.cycles.drain(..start));
         self.stirred |= start > 0;
+        let start_s = self.cycles[0].half.start.time_s;
+        self.close_driven(RunEnd::ExcitationChanged, start_s, closer);
         if state == State::Forced {
             self.flush(self.cycles[0].half.start.time_s, closer);
         }
+    }
+
+    /// Ends the roll under the rod that has not become steady, at `end_s` at the latest.
+    fn close_driven(&mut self, end: RunEnd, end_s: f64, closer: &mut Closer) {
+        let Some(cycles) = self.driven.take(end_s) else { return };
+        let (first, last) = (&cycles[0].half, &cycles[cycles.len() - 1].half);
+        let (start_s, end_s) = (first.start.time_s, last.end.time_s);
+        self.flush(start_s, closer);
+        let kind = RunKind::Forced;
+        let stretch = Stretch {
+            kind,
+            start_s,
+            end_s,
+            end,
+            cycles: &cycles,
+            repeats: false,
+            between_touches: false,
+        };
+        closer.events.push(stretch.close(closer.records, closer.limits));
+        let why = format!("the run ends where {}", end.clause());
+        self.unused = Some(Unused::new(end_s, Cause::After(end, why)));
     }
 
     /// Index of the first of the last half cycles that fall one after the other without a drive.
@@ -293,7 +331,8 @@ impl Motion {
             usable_end::find(closer.records, kind, &cycles, (end, end_s));
         let touched = matches!(end, RunEnd::Caught | RunEnd::ReStruck);
         let between_touches = self.stirred && touched && !first.half.is_from_hold();
-        let stretch = Stretch { kind, start_s, end_s, end, cycles: &cycles, between_touches };
+        let stretch =
+            Stretch { kind, start_s, end_s, end, cycles: &cycles, repeats: true, between_touches };
         self.stirred = true;
         if between_touches && self.unused.is_some() && stretch.is_too_short() {
             // Irregular roll is one rejection, not a hundred.
