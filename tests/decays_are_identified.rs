@@ -179,7 +179,18 @@ fn what_is_no_decay_is_refused_with_its_reason() {
     let short = decay(times[..20].to_vec(), vec![0.1; 20]);
     let noise = decay(times.clone(), noisy(&vec![0.0; times.len()], NOISE_RAD, 4));
     let ramp = decay(times.clone(), times.iter().map(|t| 0.01 * t).collect());
-    for (run, part) in [(constant, "constant"), (short, "too few"), (ramp, "half cycles")] {
+    let coarse = BARE.roll(0.17, &times).iter().map(|r| (r / 0.06).round() * 0.06).collect();
+    let coarse = decay(times.clone(), coarse);
+    let half = BARE.roll(0.17, &even(100.0, 0.9));
+    let half = decay(even(100.0, 0.9), noisy(&half, NOISE_RAD, 6));
+    let cases = [
+        (constant, "constant"),
+        (short, "too few"),
+        (ramp, "half cycles"),
+        (coarse, "steps of 3.438 deg"),
+        (half, "half cycles"),
+    ];
+    for (run, part) in cases {
         let reason = identify(&run, &SETTING).expect_err("nothing can be identified");
         assert!(reason.contains(part), "{reason}");
     }
@@ -188,8 +199,52 @@ fn what_is_no_decay_is_refused_with_its_reason() {
     }
 }
 
+/// Whether every number of an identification is one.
+fn is_finite(found: &Identification) -> bool {
+    let estimates = [
+        found.damping.b1_per_s,
+        found.damping.b3_s,
+        found.natural_frequency_rad_s,
+        found.roll_offset_rad,
+        found.roll_noise_rad,
+        found.initial_roll_rad,
+    ];
+    let curve = found.damping_curve.iter().map(|point| point.damping_per_s2);
+    let equivalent = found.equivalent_damping.iter().map(|at| at.fitted_per_s);
+    estimates
+        .into_iter()
+        .chain(curve)
+        .chain(equivalent)
+        .chain(found.inertia_kg_m2)
+        .all(|e| e.mean.is_finite() && e.sd.is_finite() && e.lo95 <= e.hi95)
+        && found.moment.mean_per_s2.iter().all(|u| u.is_finite())
+        && found.moment.sd_per_s2.iter().all(|u| u.is_finite())
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn any_finite_forced_record_gives_finite_numbers_or_a_reason(
+        value in prop::collection::vec(-1.0..1.0_f64, 60..200),
+        drive in prop::collection::vec(-1e4..1e4_f64, 200),
+        swing in 0.0..0.3_f64,
+        repeats in any::<bool>(),
+    ) {
+        let time_s: Vec<f64> = (0..value.len()).map(|i| 0.05 * i as f64).collect();
+        let roll = value.iter().zip(&time_s).map(|(v, t)| 0.01 * v + swing * (5.0 * t).sin());
+        let moment = drive.iter().zip(&time_s).map(|(v, t)| 1e-3 * v + 20.0 * (5.1 * t).sin());
+        let run = Run {
+            kind: RunKind::Forced,
+            drive: Series { time_s: time_s.clone(), value: moment.collect() },
+            excitation_rad_s: repeats.then_some(5.0),
+            ..decay(time_s.clone(), roll.collect())
+        };
+        match identify(&run, &SETTING) {
+            Err(reason) => prop_assert!(!reason.is_empty()),
+            Ok(found) => prop_assert!(is_finite(&found), "{found:?}"),
+        }
+    }
 
     #[test]
     fn any_finite_record_gives_finite_numbers_or_a_reason(
@@ -200,17 +255,7 @@ proptest! {
         let time_s: Vec<f64> = steps.iter().take(value.len()).map(|s| { now += s; now }).collect();
         match identify(&decay(time_s, value), &SETTING) {
             Err(reason) => prop_assert!(!reason.is_empty()),
-            Ok(found) => {
-                let all = [
-                    found.damping.b1_per_s, found.damping.b3_s, found.natural_frequency_rad_s,
-                    found.roll_offset_rad, found.roll_noise_rad, found.initial_roll_rad,
-                ];
-                for e in all {
-                    prop_assert!(e.mean.is_finite() && e.sd.is_finite(), "{e:?}");
-                }
-                prop_assert!(found.moment.mean_per_s2.iter().all(|u| u.is_finite()));
-                prop_assert!(found.moment.sd_per_s2.iter().all(|u| u.is_finite()));
-            }
+            Ok(found) => prop_assert!(is_finite(&found), "{found:?}"),
         }
     }
 }

@@ -15,8 +15,7 @@ const FREQUENCY_SHARE: RangeInclusive<f64> = 0.1..=10.0;
 
 /// Refuses a roll that turns a model over.
 pub(super) fn roll(run: &Run) -> Result<(), String> {
-    let bound = |pick: fn(f64, f64) -> f64| run.roll.value.iter().copied().reduce(pick);
-    let (low, high) = (bound(f64::min).unwrap_or(0.0), bound(f64::max).unwrap_or(0.0));
+    let (low, high) = bounds(run);
     let amplitude_rad = 0.5 * (high - low);
     if amplitude_rad > FRAC_PI_2 {
         return Err(format!(
@@ -26,6 +25,29 @@ pub(super) fn roll(run: &Run) -> Result<(), String> {
         ));
     }
     Ok(())
+}
+
+/// Steps of a converter that the roll must move over: below this its shape is the converter's.
+const N_QUANTA: f64 = 8.0;
+
+/// Refuses a roll that moves over a few steps of its channel only.
+pub(super) fn resolution(run: &Run, quantum_rad: Option<f64>) -> Result<(), String> {
+    let Some(quantum_rad) = quantum_rad else { return Ok(()) };
+    let (low, high) = bounds(run);
+    let n_quanta = ((high - low) / quantum_rad).round();
+    if n_quanta >= N_QUANTA {
+        return Ok(());
+    }
+    Err(format!(
+        "the roll moves over {n_quanta} steps of {:.3} deg of its channel, {N_QUANTA} are needed \
+         (hint: a finer range of the converter, or a larger heel)",
+        quantum_rad.to_degrees()
+    ))
+}
+
+fn bounds(run: &Run) -> (f64, f64) {
+    let bound = |pick: fn(f64, f64) -> f64| run.roll.value.iter().copied().reduce(pick);
+    (bound(f64::min).unwrap_or(0.0), bound(f64::max).unwrap_or(0.0))
 }
 
 /// Refuses a moment that does not belong to the motion.

@@ -30,6 +30,7 @@ use crate::inverse::identification::{
 };
 use crate::inverse::mixture;
 use crate::inverse::observed::Observed;
+use crate::inverse::plausible;
 use crate::inverse::record::Record;
 use crate::run::{Run, RunKind};
 
@@ -72,6 +73,7 @@ impl Solved {
 /// The reason, as a sentence with its values, why the decay cannot be identified.
 pub fn solve(run: &Run) -> Result<Solved, String> {
     let record = Record::new(&run.roll)?;
+    plausible::resolution(run, record.quantum_rad)?;
     let thinned = record.per_period(SAMPLES_PER_PERIOD);
     let cubic = FORMS[CUBIC].powers();
     let linear = settle(&thinned, first_guess(&thinned, run), cubic, false)?;

@@ -33,6 +33,8 @@ const UNLAWFUL: f64 = 0.05;
 /// Share of the roll beyond which a fit explains nothing.
 const MOST_LEFT: f64 = 0.4;
 
+const LOST: &str = "the roll equation cannot be fitted to the record under its measured moment";
+
 /// The run as it is fitted.
 struct Fit<'a> {
     record: &'a Record,
@@ -72,6 +74,9 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
     };
     let inertia = unknown(INERTIA);
     let natural = (setting.restoring_n_m_per_rad / inertia.mean).sqrt();
+    if !(inertia.sd.is_finite() && natural.is_finite()) {
+        return Err(LOST.into());
+    }
     let motion = point.driven.motion(&moment, &record.time_s);
     let (amplitude_rad, rate) = rms(&motion);
     let swinging_rad_s = rate / amplitude_rad;
@@ -202,7 +207,7 @@ impl Fit<'_> {
         if best.is_finite() && last.0.driven.values[INERTIA] > 0.0 {
             Ok(last.0)
         } else {
-            Err("the roll equation cannot be fitted to the record".into())
+            Err(LOST.into())
         }
     }
 

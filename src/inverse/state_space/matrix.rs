@@ -79,7 +79,7 @@ pub fn exponential<const N: usize>(a: &Matrix<N>) -> Matrix<N> {
 /// The sum is never formed, so no digits are lost to squaring.
 pub fn triangular_root<const N: usize>(columns: &mut [[f64; N]]) -> Matrix<N> {
     let mut root = [[0.0; N]; N];
-    for pivot in 0..N {
+    for pivot in 0..N.min(columns.len()) {
         // Reflect so that row `pivot` is zero in every column after the first `pivot + 1`.
         let norm = columns[pivot..].iter().map(|c| c[pivot] * c[pivot]).sum::<f64>().sqrt();
         if norm == 0.0 {
