@@ -7,6 +7,7 @@ mod campaign_folder;
 mod decays_are_identified;
 mod dense_posterior;
 mod draws_belong_together;
+mod driven_runs_are_identified;
 mod forced_runs_of_any_course;
 mod json_schema;
 mod kvlcc2_is_identified_as_published;

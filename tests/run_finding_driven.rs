@@ -1,124 +1,150 @@
-//! Roll under the rod that does not repeat, through the run finder.
+//! Rolls under the rod that do not repeat are found as one run each.
 
-use devices::{Quantity, Sample};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-use rand_distr::StandardNormal;
-use rolltank::inverse::identification::Method;
-use rolltank::inverse::{Setting, identify};
-use rolltank::run::{Event, Limits, RunFinder, RunKind};
+use rolltank::run::{Run, RunEnd, RunKind};
 
-const INERTIA_KG_M2: f64 = 1.675;
-const RESTORING_N_M: f64 = 79.85;
-const B1_PER_S: f64 = 0.6;
-const B3_S: f64 = 0.2;
+use super::run_finding_scene::{Found, LIMITS, ON_THE_ROD, Scene, UNDER_WAY, find};
 
-/// Rest, the rod's course for `span_s` that comes in over 2 s and is stopped within half a second,
-/// rest.
-fn scene(span_s: f64, seed: u64, course: impl Fn(f64) -> f64) -> Vec<Sample> {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let mut noise = |sd: f64| sd * rng.sample::<f64, _>(StandardNormal);
-    // Without a jump of the acceleration, which no sample rate would resolve.
-    let smooth = |s: f64| s.clamp(0.0, 1.0).powi(3) * (10.0 - 15.0 * s + 6.0 * s * s).max(0.0);
-    let ease = |s: f64| if s >= 1.0 { 1.0 } else { smooth(s) };
-    let fade = |t: f64| ease(t / 2.0) * ease((span_s - t) / 0.5);
-    let roll = |t: f64| {
-        let t = t - 10.0;
-        if (0.0..span_s).contains(&t) { fade(t) * course(t) } else { 0.0 }
-    };
-    let step = 1e-3;
-    let mut samples = Vec::new();
-    for i in 0..((span_s + 25.0) * 100.0) as usize {
-        let t = 0.01 * i as f64;
-        let rate = (roll(t + step) - roll(t - step)) / (2.0 * step);
-        let bend = (roll(t + step) - 2.0 * roll(t) + roll(t - step)) / (step * step);
-        let damping = B1_PER_S * rate + B3_S * rate.powi(3);
-        let moment = INERTIA_KG_M2 * (bend + damping) + RESTORING_N_M * roll(t);
-        for (quantity, value) in [
-            (Quantity::Roll, roll(t) + noise(5e-4)),
-            (Quantity::Moment, moment + noise(0.05)),
-            (Quantity::Speed, 0.99 + noise(1e-3)),
-        ] {
-            samples.push(Sample { quantity, time_s: t, value });
+const REST: &str = "{ rest = { duration_s = 10.0 } }";
+
+fn found_in(scene: &Scene, actions: &str) -> Found {
+    let played = scene.play(&format!("{REST}, {actions}"));
+    for truth in &played.truth.runs {
+        println!("truth {:?} {:.2} to {:.2} s", truth.kind, truth.start_s, truth.end_s);
+    }
+    let found = find(&played, LIMITS);
+    found.print();
+    found
+}
+
+/// Checks that the run is forced without a frequency and holds nearly all from `start_s` to
+/// `end_s`: its first and last half cycles may be too small, or cut by the end.
+fn assert_whole(run: &Run, start_s: f64, end_s: f64) {
+    assert_eq!((run.kind, run.excitation_rad_s), (RunKind::Forced, None));
+    assert!((-0.3..2.0).contains(&(run.start_s - start_s)), "starts at {}", run.start_s);
+    assert!((-2.0..1.0).contains(&(run.end_s - end_s)), "ends at {}", run.end_s);
+    assert!(run.drive.time_s.len() + 2 > run.roll.time_s.len());
+}
+
+#[test]
+fn an_imposed_sweep_is_one_run() {
+    for (from, to, duration_s) in [(5.0, 9.0, 40.0), (9.0, 5.0, 40.0), (4.0, 10.0, 60.0)] {
+        let sweep = format!(
+            "{{ forced_sweep = {{ amplitude_deg = 8.0, from_rad_s = {from}, to_rad_s = {to}, \
+             duration_s = {duration_s:.1} }} }}, {{ stop = {{ duration_s = 6.0 }} }}"
+        );
+        let found = found_in(&ON_THE_ROD, &sweep);
+        assert_eq!(found.runs.len(), 1, "{from} to {to} rad/s");
+        assert_whole(&found.runs[0], 10.0, 10.0 + duration_s);
+        let still = found.runs[0].still.expect("the rest before");
+        assert!(still.force.unwrap().abs() < 0.05, "{still:?}");
+    }
+}
+
+#[test]
+fn the_answer_to_a_swept_moment_is_one_run() {
+    for (from, to) in [(5.0, 9.0), (9.0, 5.0)] {
+        let sweep = format!(
+            "{{ driven_sweep = {{ moment_n_m = 1.5, from_rad_s = {from}, to_rad_s = {to}, \
+             duration_s = 45.0 }} }}"
+        );
+        let found = found_in(&ON_THE_ROD, &sweep);
+        assert_eq!(found.runs.len(), 1, "{from} to {to} rad/s");
+        assert_whole(&found.runs[0], 10.0, 55.0);
+    }
+}
+
+#[test]
+fn an_irregular_roll_is_one_run_whatever_the_draw() {
+    for action in ["forced_irregular = { rms_deg = 4.0", "driven_irregular = { rms_n_m = 1.2"] {
+        for seed in 0..8 {
+            let actions =
+                format!("{{ {action}, from_rad_s = 4.5, to_rad_s = 9.0, duration_s = 60.0 }} }}");
+            let found = found_in(&Scene { seed, ..ON_THE_ROD }, &actions);
+            assert_eq!(found.runs.len(), 1, "{action}, seed {seed}");
+            assert_whole(&found.runs[0], 10.0, 70.0);
         }
     }
-    samples
-}
-
-fn found(samples: &[Sample]) -> Vec<Event> {
-    let mut finder = RunFinder::new(Limits {
-        carriage_max_speed_m_s: Some(2.0),
-        declared_speed_m_s: None,
-        length_pp_m: 2.5,
-        gravity_m_s2: 9.81,
-    });
-    let mut events = Vec::new();
-    for sample in samples {
-        finder.push(sample, &mut events);
-    }
-    finder.finish(&mut events);
-    events
-}
-
-fn assert_one_run(samples: &[Sample], span_s: f64) {
-    let events = found(samples);
-    let runs: Vec<_> = events
-        .iter()
-        .filter_map(|event| match event {
-            Event::Run(run) => Some(run),
-            Event::Rejected(_) => None,
-        })
-        .collect();
-    let told: Vec<String> = events
-        .iter()
-        .map(|event| match event {
-            Event::Run(run) => {
-                format!("{:?} {:.1}-{:.1} {:?}", run.kind, run.start_s, run.end_s, run.end)
-            }
-            Event::Rejected(r) => format!("{:.1}-{:.1}: {}", r.start_s, r.end_s, r.reason),
-        })
-        .collect();
-    assert_eq!(runs.len(), 1, "{told:?}");
-    let run = runs[0];
-    assert_eq!((run.kind, run.excitation_rad_s), (RunKind::Forced, None), "{told:?}");
-    assert!(run.end_s - run.start_s > 0.75 * span_s, "{told:?}");
-    let setting = Setting {
-        restoring_n_m_per_rad: RESTORING_N_M,
-        exciter: None,
-        method: Method::Exact,
-        seed: 1,
-    };
-    let identification = identify(run, &setting).expect("the run can be identified");
-    let inertia = identification.inertia_kg_m2.expect("a forced run has one");
-    assert!((inertia.mean / INERTIA_KG_M2 - 1.0).abs() < 0.005, "{inertia:?}");
-    let five = identification.equivalent_damping.iter().find(|e| e.amplitude_deg > 4.9);
-    let five = five.expect("five degrees are always reported").fitted_per_s;
-    assert!((five.mean / 0.65 - 1.0).abs() < 0.15, "{five:?}");
 }
 
 #[test]
-fn a_sweep_is_one_run_and_gives_inertia_and_damping() {
-    for seed in 0..4 {
-        let rate = 0.1 + 0.02 * f64::from(seed as u32);
-        let samples = scene(40.0, seed, |t| 0.12 * ((4.0 + 0.5 * rate * t) * t).sin());
-        assert_one_run(&samples, 40.0);
-    }
+fn a_sweep_ends_where_the_carriage_brakes() {
+    let pass = "froude = 0.2\ncarriage = { start_s = 2.0, brake_s = 30.0 }";
+    let found = found_in(
+        &Scene { pass, ..UNDER_WAY },
+        "{ forced_sweep = { amplitude_deg = 8.0, from_rad_s = 5.0, to_rad_s = 9.0, \
+         duration_s = 40.0 } }",
+    );
+    assert_eq!(found.runs.len(), 1);
+    assert_whole(&found.runs[0], 10.0, 30.0);
+    assert_eq!(found.runs[0].end, RunEnd::PassEnded);
 }
 
 #[test]
-fn an_irregular_course_is_one_run_and_gives_inertia_and_damping() {
-    for seed in 0..4 {
-        let mut rng = ChaCha8Rng::seed_from_u64(50 + seed);
-        let sines: Vec<(f64, f64)> = (0..9)
-            .map(|i| (4.8 + 0.31 * f64::from(i), std::f64::consts::TAU * rng.random::<f64>()))
-            .collect();
-        let course = |t: f64| sines.iter().map(|(w, p)| 0.05 * (w * t + p).sin()).sum();
-        assert_one_run(&scene(50.0, seed, course), 50.0);
+fn a_sweep_and_the_steady_roll_behind_it_are_two_runs() {
+    let found = found_in(
+        &ON_THE_ROD,
+        "{ forced_sweep = { amplitude_deg = 8.0, from_rad_s = 4.5, to_rad_s = 8.5, \
+         duration_s = 40.0 } }, \
+         { forced = { amplitude_deg = 8.0, frequency_rad_s = 6.0, duration_s = 25.0 } }",
+    );
+    assert_eq!(found.runs.len(), 2);
+    // The rod takes 2 s to the next frequency, which belong to what does not repeat.
+    assert_whole(&found.runs[0], 10.0, 52.0);
+    let steady = found.runs[1].excitation_rad_s.expect("it repeats");
+    assert!((steady / 6.0 - 1.0).abs() < 2e-3, "{steady}");
+}
+
+#[test]
+fn a_decay_follows_an_irregular_roll() {
+    let found = found_in(
+        &ON_THE_ROD,
+        "{ driven_irregular = { rms_n_m = 1.5, from_rad_s = 5.0, to_rad_s = 8.5, \
+         duration_s = 40.0 } }, { release = { duration_s = 20.0 } }",
+    );
+    let kinds: Vec<RunKind> = found.runs.iter().map(|run| run.kind).collect();
+    assert_eq!(kinds, [RunKind::Forced, RunKind::Decay]);
+    assert_whole(&found.runs[0], 10.0, 50.0);
+    assert!((found.runs[1].start_s - 50.0).abs() < 1.5, "{}", found.runs[1].start_s);
+}
+
+#[test]
+fn a_sweep_of_a_few_cycles_is_refused_with_the_number_that_it_lacks() {
+    let found = found_in(
+        &ON_THE_ROD,
+        "{ forced_sweep = { amplitude_deg = 8.0, from_rad_s = 5.0, to_rad_s = 7.0, \
+         duration_s = 2.5, ramp_s = 1.0 } }, { stop = { duration_s = 6.0, ramp_s = 1.0 } }",
+    );
+    assert!(found.runs.is_empty());
+    found.rejected_for("fewer than 8 half cycles of it have an excitation of their own");
+}
+
+#[test]
+fn a_hand_that_rocks_the_model_is_no_rod_even_when_the_roll_leaks_into_the_force() {
+    let mut played = ON_THE_ROD.play(
+        "{ rest = { duration_s = 6.0 } }, \
+         { rock = { amplitude_deg = 10.0, frequency_rad_s = 6.8, duration_s = 9.0 } }, \
+         { release = { duration_s = 20.0 } }",
+    );
+    let mut roll_rad = 0.0;
+    for sample in &mut played.samples {
+        match sample.quantity {
+            devices::Quantity::Roll => roll_rad = sample.value,
+            _ => sample.value += 3.0 * roll_rad,
+        }
     }
+    let found = find(&played, LIMITS);
+    found.print();
+    let kinds: Vec<RunKind> = found.runs.iter().map(|run| run.kind).collect();
+    assert_eq!(kinds, [RunKind::Decay]);
 }
 
 #[test]
 fn a_hand_on_the_rod_for_five_periods_is_no_run() {
-    let events = found(&scene(5.0, 3, |t| 0.1 * (6.0 * t + 0.2 * t * t).sin()));
-    assert!(events.iter().all(|event| matches!(event, Event::Rejected(_))), "{events:?}");
+    let found = found_in(
+        &ON_THE_ROD,
+        "{ forced_sweep = { amplitude_deg = 6.0, from_rad_s = 6.0, to_rad_s = 8.0, \
+         duration_s = 5.0, ramp_s = 1.0 } }, { stop = { duration_s = 6.0, ramp_s = 0.5 } }",
+    );
+    assert!(found.runs.is_empty());
+    found.rejected_for("at least 24");
 }

@@ -7,6 +7,7 @@ use super::Run;
 use super::RunEnd;
 use super::RunKind;
 use super::decay::N_HALF_CYCLES_MIN;
+use super::driven;
 use super::forced;
 use super::forced::Cycle;
 use super::records::Records;
@@ -23,6 +24,8 @@ const N_BETWEEN_TOUCHES: usize = 6;
 pub(super) struct Stretch<'a> {
     /// Decay or forced.
     pub(super) kind: RunKind,
+    /// Whether a forced roll repeats at one frequency.
+    pub(super) repeats: bool,
     /// First instant [s].
     pub(super) start_s: f64,
     /// Last instant [s].
@@ -31,8 +34,6 @@ pub(super) struct Stretch<'a> {
     pub(super) end: RunEnd,
     /// Its half cycles, those after the end included.
     pub(super) cycles: &'a [Cycle],
-    /// Whether a forced roll repeats itself.
-    pub(super) repeats: bool,
     /// Whether it began without a hold or a rest before it, and ended by another touch.
     pub(super) between_touches: bool,
 }
@@ -50,14 +51,15 @@ impl Stretch<'_> {
     }
 
     /// The half cycles that end within the stretch, with a fifth of the last one to spare.
-    fn used(&self) -> &[Cycle] {
+    pub(super) fn used(&self) -> &[Cycle] {
         let whole = |c: &&Cycle| c.half.end.time_s <= self.end_s + 0.2 * c.half.duration_s();
         &self.cycles[..self.cycles.iter().take_while(whole).count()]
     }
 
     fn n_needed(&self) -> usize {
         match self.kind {
-            RunKind::Forced => forced::N_SETTLED,
+            RunKind::Forced if self.repeats => forced::N_SETTLED,
+            RunKind::Forced => driven::N_HALF_CYCLES_MIN,
             RunKind::Decay if self.between_touches => N_BETWEEN_TOUCHES,
             RunKind::Decay => N_HALF_CYCLES_MIN,
         }
@@ -73,7 +75,8 @@ impl Stretch<'_> {
         let n = used.len();
         let what = match self.kind {
             RunKind::Decay => "free decay",
-            RunKind::Forced => "steady roll",
+            RunKind::Forced if self.repeats => "steady roll",
+            RunKind::Forced => "roll under the rod",
         };
         if n < needed {
             return Some(format!(
@@ -103,7 +106,10 @@ impl Stretch<'_> {
         }
         let middle = |c: &Cycle| 0.5 * (c.half.start.roll_rad + c.half.end.roll_rad);
         let mean_rad = used.iter().map(middle).sum::<f64>() / used.len() as f64;
-        let reach_rad = 0.5 * used[0].half.amplitude_rad();
+        // A roll that does not repeat may begin with any of its half cycles.
+        let n_first = if self.repeats { 1 } else { used.len() };
+        let amplitudes = used[..n_first].iter().map(|c| c.half.amplitude_rad());
+        let reach_rad = 0.5 * amplitudes.fold(0.0, f64::max);
         let roll = records.roll.series(start_s, end_s);
         let (Some(&start_s), Some(&end_s)) = (roll.time_s.first(), roll.time_s.last()) else {
             return Err("no roll sample in the stretch".to_owned());

@@ -5,8 +5,8 @@
 //! that noise (`half_cycles`); the speed into steady stretches (`carriage_pass`). A state
 //! machine (`motion`) joins half cycles into a decay as long as `decay` finds each one where
 //! the last ones lead, and into a forced run as long as `forced` finds it steady; what the rod
-//! drives otherwise, `driven` gathers. When a run has
-//! ended, `usable_end` looks for the instant at which the samples left their course.
+//! drives without repeating is kept by `driven` and is a forced run too. When a run has ended,
+//! `usable_end` looks for the instant at which the samples left their course.
 //!
 //! Nothing here reads a clock or a file or draws a number, and what is told depends only on the
 //! samples in their order. Memory is bounded: at rest the last 20 s are kept, and a run is closed
@@ -50,7 +50,7 @@ pub struct Series {
 pub enum RunKind {
     /// Heeled, released, left to roll.
     Decay,
-    /// Rolled by the oscillator rod, at one frequency or in any other course.
+    /// Rolled by the oscillator rod.
     Forced,
 }
 
@@ -107,8 +107,8 @@ pub struct Run {
     pub drive: Series,
     /// The still stretch before the run, when there was one.
     pub still: Option<Still>,
-    /// Frequency of the excitation [rad/s] of a forced run, as the run finder saw it; none where
-    /// the excitation does not repeat.
+    /// Frequency of the excitation [rad/s] of a forced run that repeats, as the run finder saw it;
+    /// none when the excitation sweeps or is irregular.
     pub excitation_rad_s: Option<f64>,
 }
 

@@ -43,7 +43,7 @@ pub(super) struct Motion {
     /// Half cycles after a forced run that may be a single outlier.
     doubtful: Vec<Cycle>,
     unused: Option<Unused>,
-    /// Roll under the rod that has not become steady.
+    /// The roll under the rod that no steady run has claimed.
     driven: Driven,
     trust: Trust,
     /// The model has rolled otherwise since it was last still.
@@ -59,8 +59,8 @@ pub(super) struct Motion {
 impl Motion {
     /// Time [s] from which samples are still needed.
     pub(super) fn needed_from_s(&self) -> Option<f64> {
-        let run_s = self.cycles.first().map(|c| c.half.start.time_s);
-        run_s.into_iter().chain(self.driven.needed_from_s()).reduce(f64::min)
+        let cycles_s = self.cycles.first().map(|c| c.half.start.time_s);
+        cycles_s.into_iter().chain(self.driven.needed_from_s()).reduce(f64::min)
     }
 
     /// Takes the next half cycle.
@@ -89,13 +89,12 @@ impl Motion {
             (State::Forced, Passage::Steady) => self.forced(cycle, &mut closer),
             (State::Searching, _) => self.search(cycle, &mut closer),
         }
-        let long = |c: &Cycle| end_s - c.half.start.time_s > RUN_MAX_S;
-        if self.state != State::Searching && self.cycles.first().is_some_and(long) {
+        let begun_s = match self.state {
+            State::Searching => self.driven.needed_from_s(),
+            _ => self.cycles.first().map(|c| c.half.start.time_s),
+        };
+        if begun_s.is_some_and(|start_s| end_s - start_s > RUN_MAX_S) {
             self.end(RunEnd::TooLong, end_s, records, limits, events);
-        }
-        if self.driven.needed_from_s().is_some_and(|start_s| end_s - start_s > RUN_MAX_S) {
-            let mut closer = Closer { records, limits, events };
-            self.close_driven(RunEnd::TooLong, end_s, &mut closer);
         }
     }
 
@@ -117,7 +116,7 @@ impl Motion {
                 _ => self.stop(end, end_s, &mut closer),
             }
         }
-        self.close_driven(end, end_s, &mut closer);
+        self.close_driven(end, f64::INFINITY, None, &mut closer);
         self.flush(f64::INFINITY, &mut closer);
         *self = Self::default();
         if end == RunEnd::Gap {
@@ -140,6 +139,7 @@ impl Motion {
         let seen_rad = (1.5 * ripple.lost_below_rad).max(ripple.quiet_range_rad());
         let end = match self.state {
             State::Forced => RunEnd::ExcitationChanged,
+            State::Searching if self.driven.is_by_rod() => RunEnd::ExcitationChanged,
             _ if due_rad > seen_rad => RunEnd::Caught,
             _ => RunEnd::LostInNoise,
         };
@@ -151,16 +151,16 @@ impl Motion {
     }
 
     fn search(&mut self, cycle: Cycle, closer: &mut Closer) {
+        if !self.driven.goes_on(&cycle) {
+            self.close_driven(Driven::end_before(&cycle), f64::INFINITY, None, closer);
+        }
         self.trust.note(&self.cycles, &cycle, closer.records);
         let distrust = self.trust.distrust();
-        if !self.driven.goes_on(&cycle) {
-            let end = if cycle.steady { RunEnd::ExcitationChanged } else { RunEnd::PassEnded };
-            self.close_driven(end, cycle.half.start.time_s, closer);
+        if !self.trust.is_spent(closer.records, cycle.half.end.time_s) {
+            self.driven.push(&cycle, self.unused.as_ref(), closer.records);
         }
         self.unused.get_or_insert_with(|| Unused::from_cycle(&cycle, distrust)).extend(&cycle);
-        if !cycle.is_driven() {
-            self.rod_on = false;
-        }
+        self.rod_on = (self.rod_on && cycle.is_driven()) || self.driven.is_by_rod();
         self.cycles.push(cycle);
         if self.cycles.len() > N_REMEMBERED {
             self.cycles.remove(0);
@@ -168,13 +168,13 @@ impl Motion {
         let ripple = closer.records.ripple();
         let recorded = closer.records.drive.is_recorded();
         if self.trust.is_spent(closer.records, cycle.half.end.time_s) {
-            self.driven = Driven::default();
             return;
         }
-        if let Some(start) = forced::settled(&self.cycles, recorded, ripple) {
+        if let Some(start) = forced::settled(&self.cycles, recorded, ripple)
+            && self.driven.yields_to(&self.cycles[start..], closer.records, ripple)
+        {
             self.begin(State::Forced, start, closer);
         } else if distrust.is_none()
-            && !self.driven.is_at_work()
             && let Some(start) = self.decay_start(closer)
         {
             self.n_drops_left = if decay::is_rocked_up(&self.halves(), start) { 2 } else { 0 };
@@ -188,31 +188,32 @@ impl Motion {
         self.before.extend(self.cycles.drain(..start));
         self.stirred |= start > 0;
         let start_s = self.cycles[0].half.start.time_s;
-        self.close_driven(RunEnd::ExcitationChanged, start_s, closer);
         if state == State::Forced {
-            self.flush(self.cycles[0].half.start.time_s, closer);
+            let steady = std::mem::take(&mut self.cycles);
+            self.close_driven(RunEnd::ExcitationChanged, start_s, Some(&steady), closer);
+            self.cycles = steady;
         }
+        self.driven.cut(start_s);
     }
 
-    /// Ends the roll under the rod that has not become steady, at `end_s` at the latest.
-    fn close_driven(&mut self, end: RunEnd, end_s: f64, closer: &mut Closer) {
-        let Some(cycles) = self.driven.take(end_s) else { return };
-        let (first, last) = (&cycles[0].half, &cycles[cycles.len() - 1].half);
-        let (start_s, end_s) = (first.start.time_s, last.end.time_s);
-        self.flush(start_s, closer);
-        let kind = RunKind::Forced;
-        let stretch = Stretch {
-            kind,
-            start_s,
-            end_s,
-            end,
-            cycles: &cycles,
-            repeats: false,
-            between_touches: false,
-        };
-        closer.events.push(stretch.close(closer.records, closer.limits));
-        let why = format!("the run ends where {}", end.clause());
-        self.unused = Some(Unused::new(end_s, Cause::After(end, why)));
+    /// Ends the roll under the rod that no steady run has claimed, and tells it when it is a run.
+    fn close_driven(
+        &mut self,
+        end: RunEnd,
+        until_s: f64,
+        next: Option<&[Cycle]>,
+        closer: &mut Closer,
+    ) {
+        let Some(closed) = self.driven.close(until_s, next, closer.records) else { return };
+        self.unused.clone_from(&closed.before);
+        self.flush(closed.start_s(), closer);
+        let event = closed.stretch(end).close(closer.records, closer.limits);
+        closer.events.push(event);
+        let end_s = closed.end_s();
+        self.cycles.retain(|c| c.half.start.time_s >= end_s - 1e-9);
+        self.trust.run_ended(end, closed.last_amplitude_rad());
+        let unused = closed.unused_behind(end, &self.cycles);
+        (self.unused, self.stirred, self.rod_left_s) = (Some(unused), true, Some(end_s));
     }
 
     /// Index of the first of the last half cycles that fall one after the other without a drive.
@@ -225,7 +226,7 @@ impl Motion {
         let n = self.cycles.len();
         let start = (1..n).rev().take_while(begins).last()? - 1;
         let chain = &self.cycles[start..];
-        let driven = chain.last().is_some_and(Cycle::is_driven);
+        let driven = chain.last().is_some_and(Cycle::is_driven) || self.driven.is_by_rod();
         (!driven || (!self.rod_on && forced::drive_follows_decay(chain))).then_some(start)
     }
 
@@ -304,8 +305,9 @@ impl Motion {
         if n > 0 {
             let first = self.cycles[0];
             let unused = self.unused.get_or_insert_with(|| Unused::from_cycle(&first, None));
-            self.cycles.drain(..n).for_each(|cycle| unused.extend(&cycle));
-            self.flush(self.cycles[0].half.start.time_s, closer);
+            let crept: Vec<Cycle> = self.cycles.drain(..n).collect();
+            crept.iter().for_each(|cycle| unused.extend(cycle));
+            self.driven.take_back(&crept, closer.records);
         }
     }
 
@@ -315,6 +317,7 @@ impl Motion {
         let kind = if self.state == State::Forced { RunKind::Forced } else { RunKind::Decay };
         let mut cycles = std::mem::take(&mut self.cycles);
         let ripple = closer.records.ripple();
+        let all = cycles.clone();
         if kind == RunKind::Forced {
             let n = forced::n_not_yet_steady(&cycles, &closer.records.roll, ripple);
             for cycle in cycles.drain(..n) {
@@ -332,12 +335,15 @@ impl Motion {
         let touched = matches!(end, RunEnd::Caught | RunEnd::ReStruck);
         let between_touches = self.stirred && touched && !first.half.is_from_hold();
         let stretch =
-            Stretch { kind, start_s, end_s, end, cycles: &cycles, repeats: true, between_touches };
+            Stretch { kind, repeats: true, start_s, end_s, end, cycles: &cycles, between_touches };
         self.stirred = true;
-        if between_touches && self.unused.is_some() && stretch.is_too_short() {
-            // Irregular roll is one rejection, not a hundred.
+        // Irregular roll is one rejection, not a hundred.
+        let irregular = between_touches && self.unused.is_some() && stretch.is_too_short();
+        if irregular || self.driven.reclaims(&stretch, closer.records, ripple) {
             self.state = State::Searching;
-            self.unused.iter_mut().for_each(|u| cycles.iter().for_each(|c| u.extend(c)));
+            self.driven.take_back(&all, closer.records);
+            let unused = self.unused.get_or_insert_with(|| Unused::from_cycle(first, None));
+            all.iter().for_each(|cycle| unused.extend(cycle));
             return Vec::new();
         }
         self.flush(start_s, closer);
@@ -345,6 +351,10 @@ impl Motion {
         closer.events.push(event);
         self.rod_on = kind == RunKind::Forced;
         self.rod_left_s = left_s.filter(|_| self.rod_on);
+        match kind {
+            RunKind::Forced => self.driven.begin_behind(stretch.used(), closer.records),
+            RunKind::Decay => self.driven = Driven::default(),
+        }
         let amplitude_rad = cycles.last().map_or(0.0, |c| c.half.amplitude_rad());
         self.trust.run_ended(end, amplitude_rad);
         self.state = State::Searching;

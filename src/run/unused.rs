@@ -6,6 +6,7 @@ use super::Rejection;
 use super::RunEnd;
 use super::decay::N_HALF_CYCLES_MIN;
 use super::decay::START_RAD;
+use super::driven::N_OWN;
 use super::forced::Cycle;
 
 /// Half cycles that a run which begins later may still take back.
@@ -113,7 +114,8 @@ impl Unused {
             }
             Cause::DrivenUnsettled => format!(
                 "{rolled} under the rod that is not steady: its amplitude or period changes by \
-                 more than 3 % within three periods"
+                 more than 3 % within three periods, and fewer than {N_OWN} half cycles of it have \
+                 an excitation of their own"
             ),
             Cause::After(_, why) => format!("{why}; {rolled} after that is not used"),
         };

@@ -3,6 +3,8 @@
 use serde::Deserialize;
 use serde::Deserializer;
 
+use super::excitation::Band;
+
 /// One thing done to the model; the next action starts where this one ends.
 ///
 /// In the file each action is a table with one key, its name:
@@ -104,6 +106,64 @@ pub enum Action {
         #[serde(default = "two")]
         ramp_s: f64,
     },
+    /// The rod imposes a roll whose frequency runs evenly from one value to another.
+    ForcedSweep {
+        /// Roll amplitude [rad], `amplitude_deg` in the file.
+        #[serde(rename = "amplitude_deg", deserialize_with = "degrees")]
+        amplitude_rad: f64,
+        /// First frequency [rad/s].
+        from_rad_s: f64,
+        /// Last frequency [rad/s].
+        to_rad_s: f64,
+        /// Length of the sweep, the start-up included [s].
+        duration_s: f64,
+        /// Time in which the roll grows to its amplitude [s].
+        #[serde(default = "two")]
+        ramp_s: f64,
+    },
+    /// The rod imposes an irregular roll with frequencies from a band.
+    ForcedIrregular {
+        /// Root mean square of the roll [rad], `rms_deg` in the file.
+        #[serde(rename = "rms_deg", deserialize_with = "degrees")]
+        rms_rad: f64,
+        /// Lower end of the band [rad/s].
+        from_rad_s: f64,
+        /// Upper end of the band [rad/s].
+        to_rad_s: f64,
+        /// Length, the start-up included [s].
+        duration_s: f64,
+        /// Time in which the roll grows to its size [s].
+        #[serde(default = "two")]
+        ramp_s: f64,
+    },
+    /// The rod applies a moment whose frequency runs evenly from one value to another.
+    DrivenSweep {
+        /// Amplitude of the moment [N m].
+        moment_n_m: f64,
+        /// First frequency [rad/s].
+        from_rad_s: f64,
+        /// Last frequency [rad/s].
+        to_rad_s: f64,
+        /// Length of the sweep, the start-up included [s].
+        duration_s: f64,
+        /// Time in which the moment grows to its amplitude [s].
+        #[serde(default = "two")]
+        ramp_s: f64,
+    },
+    /// The rod applies an irregular moment with frequencies from a band.
+    DrivenIrregular {
+        /// Root mean square of the moment [N m].
+        rms_n_m: f64,
+        /// Lower end of the band [rad/s].
+        from_rad_s: f64,
+        /// Upper end of the band [rad/s].
+        to_rad_s: f64,
+        /// Length, the start-up included [s].
+        duration_s: f64,
+        /// Time in which the moment grows to its size [s].
+        #[serde(default = "two")]
+        ramp_s: f64,
+    },
 }
 
 impl Action {
@@ -118,7 +178,11 @@ impl Action {
             | Self::Catch { duration_s, .. }
             | Self::Forced { duration_s, .. }
             | Self::Stop { duration_s, .. }
-            | Self::Driven { duration_s, .. } => duration_s,
+            | Self::Driven { duration_s, .. }
+            | Self::ForcedSweep { duration_s, .. }
+            | Self::ForcedIrregular { duration_s, .. }
+            | Self::DrivenSweep { duration_s, .. }
+            | Self::DrivenIrregular { duration_s, .. } => duration_s,
         }
     }
 
@@ -134,6 +198,23 @@ impl Action {
             Self::Forced { .. } => "forced",
             Self::Stop { .. } => "stop",
             Self::Driven { .. } => "driven",
+            Self::ForcedSweep { .. } => "forced_sweep",
+            Self::ForcedIrregular { .. } => "forced_irregular",
+            Self::DrivenSweep { .. } => "driven_sweep",
+            Self::DrivenIrregular { .. } => "driven_irregular",
+        }
+    }
+
+    /// The band of frequencies of an excitation that does not repeat.
+    pub(super) fn band(&self) -> Option<Band> {
+        match *self {
+            Self::ForcedSweep { from_rad_s, to_rad_s, .. }
+            | Self::ForcedIrregular { from_rad_s, to_rad_s, .. }
+            | Self::DrivenSweep { from_rad_s, to_rad_s, .. }
+            | Self::DrivenIrregular { from_rad_s, to_rad_s, .. } => {
+                Some(Band { from_rad_s, to_rad_s })
+            }
+            _ => None,
         }
     }
 }

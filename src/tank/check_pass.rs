@@ -9,6 +9,10 @@ use super::scenario::{Condition, Damping, Pass, Scenario};
 const PASS_LENGTH_MAX_S: f64 = 3600.0;
 /// Largest angle [rad]: the small-angle restoring of (2.1) is far off beyond it.
 const ANGLE_MAX_RAD: f64 = std::f64::consts::FRAC_PI_4;
+/// Largest value of an irregular excitation over its root mean square [-], nearly always.
+const PEAK_OVER_RMS: f64 = 4.0;
+/// Frequencies of an excitation [rad/s].
+const FREQUENCY_RAD_S: (f64, f64) = (0.05, 100.0);
 /// Most repeats of one pass.
 const REPEAT_MAX: usize = 1000;
 
@@ -75,6 +79,12 @@ impl Scenario {
                 }
                 Action::Driven { moment_n_m, .. } => {
                     within(table, &key("moment_n_m"), moment_n_m, -moment, moment)?;
+                }
+                Action::DrivenSweep { moment_n_m, .. } => {
+                    within(table, &key("moment_n_m"), moment_n_m, -moment, moment)?;
+                }
+                Action::DrivenIrregular { rms_n_m, .. } => {
+                    within(table, &key("rms_n_m"), rms_n_m, 0.0, moment / PEAK_OVER_RMS)?;
                 }
                 _ => {}
             }
@@ -166,6 +176,12 @@ fn check_action(table: Table, at: usize, action: &Action) -> Checked {
     positive(table, &key("duration_s"), length_s)?;
     let highest_deg = as_written_deg(ANGLE_MAX_RAD);
     let part = |name: &str, part_s: f64| within(table, &key(name), part_s, 1e-3, length_s);
+    let (lowest, highest) = FREQUENCY_RAD_S;
+    let frequency = |name: &str, rad_s: f64| within(table, &key(name), rad_s, lowest, highest);
+    if let Some(band) = action.band() {
+        frequency("from_rad_s", band.from_rad_s)?;
+        frequency("to_rad_s", band.to_rad_s)?;
+    }
     match *action {
         Action::Rest { .. } => Ok(()),
         Action::Hold { heel_rad, ramp_s, tremor_rad, .. } => {
@@ -175,7 +191,7 @@ fn check_action(table: Table, at: usize, action: &Action) -> Checked {
         }
         Action::Rock { amplitude_rad, frequency_rad_s, .. } => {
             within(table, &key("amplitude_deg"), as_written_deg(amplitude_rad), 0.01, highest_deg)?;
-            within(table, &key("frequency_rad_s"), frequency_rad_s, 0.05, 100.0)
+            frequency("frequency_rad_s", frequency_rad_s)
         }
         Action::Release { fade_s, .. } => within(table, &key("fade_s"), fade_s, 0.0, length_s),
         Action::Strike { blow_s, .. } => part("blow_s", blow_s),
@@ -184,12 +200,26 @@ fn check_action(table: Table, at: usize, action: &Action) -> Checked {
         }
         Action::Forced { amplitude_rad, frequency_rad_s, ramp_s, .. } => {
             within(table, &key("amplitude_deg"), as_written_deg(amplitude_rad), 0.01, highest_deg)?;
-            within(table, &key("frequency_rad_s"), frequency_rad_s, 0.05, 100.0)?;
+            frequency("frequency_rad_s", frequency_rad_s)?;
             part("ramp_s", ramp_s)
         }
-        Action::Stop { ramp_s, .. } => part("ramp_s", ramp_s),
+        Action::ForcedSweep { amplitude_rad, ramp_s, .. } => {
+            within(table, &key("amplitude_deg"), as_written_deg(amplitude_rad), 0.01, highest_deg)?;
+            part("ramp_s", ramp_s)
+        }
+        Action::ForcedIrregular { rms_rad, from_rad_s, to_rad_s, ramp_s, .. } => {
+            let highest_deg = highest_deg / PEAK_OVER_RMS;
+            within(table, &key("rms_deg"), as_written_deg(rms_rad), 0.01, highest_deg)?;
+            within(table, &key("to_rad_s"), to_rad_s, from_rad_s, highest)?;
+            part("ramp_s", ramp_s)
+        }
+        Action::DrivenIrregular { from_rad_s, to_rad_s, ramp_s, .. } => {
+            within(table, &key("to_rad_s"), to_rad_s, from_rad_s, highest)?;
+            part("ramp_s", ramp_s)
+        }
+        Action::Stop { ramp_s, .. } | Action::DrivenSweep { ramp_s, .. } => part("ramp_s", ramp_s),
         Action::Driven { frequency_rad_s, ramp_s, .. } => {
-            within(table, &key("frequency_rad_s"), frequency_rad_s, 0.05, 100.0)?;
+            frequency("frequency_rad_s", frequency_rad_s)?;
             part("ramp_s", ramp_s)
         }
     }

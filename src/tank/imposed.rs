@@ -21,7 +21,8 @@ impl Kinematics {
         RollState { roll_rad: self.roll_rad, rate_rad_per_s: self.rate_rad_per_s }
     }
 
-    fn plus(self, other: Self) -> Self {
+    /// The sum of two motions.
+    pub(super) fn plus(self, other: Self) -> Self {
         Self {
             roll_rad: self.roll_rad + other.roll_rad,
             rate_rad_per_s: self.rate_rad_per_s + other.rate_rad_per_s,
@@ -31,7 +32,7 @@ impl Kinematics {
 }
 
 /// The smooth step `s(x) = 10 x^3 - 15 x^4 + 6 x^5`: its integral, value and two derivatives.
-fn smooth_step(x: f64) -> [f64; 4] {
+pub(super) fn smooth_step(x: f64) -> [f64; 4] {
     if x <= 0.0 {
         return [0.0; 4];
     }
@@ -53,7 +54,7 @@ fn smooth_step(x: f64) -> [f64; 4] {
 const TAKE_UP_S: f64 = 0.5;
 
 /// Fifth-degree paths that bring position and rate of a state to zero within `length_s`.
-fn settle(from: RollState, elapsed_s: f64, length_s: f64) -> Kinematics {
+pub(super) fn settle(from: RollState, elapsed_s: f64, length_s: f64) -> Kinematics {
     let [_, s, ds, dds] = smooth_step(elapsed_s / length_s);
     let position = Kinematics {
         roll_rad: from.roll_rad * (1.0 - s),

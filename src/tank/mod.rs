@@ -9,6 +9,7 @@ mod carriage;
 mod check;
 mod check_pass;
 mod equation;
+mod excitation;
 mod folder;
 mod free_roll;
 mod imposed;

@@ -1,8 +1,11 @@
 //! Plays the actions of a pass: the true roll, rod moment and speed, millisecond by millisecond.
 
+use rand_chacha::ChaCha8Rng;
+
 use super::action::Action;
 use super::carriage::{Carriage, half_sine};
 use super::equation::{RollState, RollingModel, advance};
+use super::excitation::{Excitation, Following};
 use super::imposed::{Heeling, Kinematics, Oscillating, Oscillation};
 use super::scenario::Waves;
 
@@ -22,6 +25,8 @@ pub(super) struct Scene<'a> {
     pub(super) waves: Option<Waves>,
     /// `b1` [1/s] at a carriage speed [m/s].
     pub(super) b1_per_s: &'a dyn Fn(f64) -> f64,
+    /// Randomness of the excitation of an action, by its place in the pass.
+    pub(super) draws: &'a dyn Fn(usize) -> ChaCha8Rng,
 }
 
 /// The true motion at one instant.
@@ -60,13 +65,15 @@ enum Drive {
     Hand { damping_n_m_s: f64 },
     /// A sinusoidal moment of the rod.
     Rod { moment_n_m: f64, frequency_rad_s: f64, ramp_s: f64 },
+    /// A moment of the rod [N m] that does not repeat.
+    Excited(Excitation),
 }
 
 impl Drive {
     /// Moment of anything but the rod [N m].
     fn hand_n_m(&self, elapsed_s: f64, state: RollState) -> f64 {
         match *self {
-            Self::Free | Self::Rod { .. } => 0.0,
+            Self::Free | Self::Rod { .. } | Self::Excited(_) => 0.0,
             Self::Fading { moment_n_m, fade_s } => {
                 let x = (elapsed_s / fade_s).min(1.0);
                 0.5 * moment_n_m * (1.0 + (std::f64::consts::PI * x).cos())
@@ -79,6 +86,7 @@ impl Drive {
     /// Moment of the rod [N m].
     fn rod_n_m(&self, elapsed_s: f64) -> f64 {
         match *self {
+            Self::Excited(ref excitation) => excitation.at(elapsed_s)[0],
             Self::Rod { moment_n_m, frequency_rad_s, ramp_s } => {
                 let grown = (elapsed_s / ramp_s).min(1.0);
                 moment_n_m * grown * (frequency_rad_s * elapsed_s).sin()
@@ -107,13 +115,15 @@ impl Scene<'_> {
         let mut oscillation = Oscillation::default();
         let mut start_s = 0.0;
         let mut stretches = Vec::with_capacity(actions.len());
-        for action in actions {
+        for (at, action) in actions.iter().enumerate() {
             let end_s = start_s + action.duration_s();
-            let nodes = match self.imposed(action, state, oscillation) {
-                Some(motion) => self.impose(&motion, start_s, end_s),
-                None => self.roll(&self.drive(action, state), state, start_s, end_s),
+            let excitation = self.excitation(action, at);
+            let imposed = self.imposed(action, excitation.as_ref(), state, oscillation);
+            let nodes = match &imposed {
+                Some(motion) => self.impose(motion, start_s, end_s),
+                None => self.roll(&self.drive(action, excitation, state), state, start_s, end_s),
             };
-            oscillation = match self.imposed(action, state, oscillation) {
+            oscillation = match imposed {
                 Some(Imposed { path: Path::Oscillating(path), .. }) => {
                     path.oscillation(end_s - start_s)
                 }
@@ -126,7 +136,29 @@ impl Scene<'_> {
         stretches
     }
 
-    fn imposed(&self, action: &Action, from: RollState, before: Oscillation) -> Option<Imposed> {
+    /// The excitation of an action at its place in the pass, if it has one that does not repeat.
+    fn excitation(&self, action: &Action, at: usize) -> Option<Excitation> {
+        let band = action.band()?;
+        match *action {
+            Action::ForcedSweep { amplitude_rad: amplitude, duration_s, ramp_s, .. }
+            | Action::DrivenSweep { moment_n_m: amplitude, duration_s, ramp_s, .. } => {
+                Some(Excitation::sweep(amplitude, band, duration_s, ramp_s))
+            }
+            Action::ForcedIrregular { rms_rad: rms, ramp_s, .. }
+            | Action::DrivenIrregular { rms_n_m: rms, ramp_s, .. } => {
+                Some(Excitation::irregular(rms, band, ramp_s, &mut (self.draws)(at)))
+            }
+            _ => None,
+        }
+    }
+
+    fn imposed(
+        &self,
+        action: &Action,
+        excitation: Option<&Excitation>,
+        from: RollState,
+        before: Oscillation,
+    ) -> Option<Imposed> {
         let rest = self.model.rest_roll_rad;
         let oscillating = |amplitude_rad, frequency_rad_s, ramp_s| {
             let path = Oscillating::new(from, before, amplitude_rad, frequency_rad_s, ramp_s, rest);
@@ -145,12 +177,18 @@ impl Scene<'_> {
             }
             // The frequency does not matter: an oscillation that stops keeps the one it had.
             Action::Stop { ramp_s, .. } => (true, oscillating(0.0, 1.0, ramp_s)),
+            Action::ForcedSweep { .. } | Action::ForcedIrregular { .. } => {
+                (true, Path::Following(Following::new(from, rest, excitation?.clone())))
+            }
             _ => return None,
         };
         Some(Imposed { by_rod, path })
     }
 
-    fn drive(&self, action: &Action, from: RollState) -> Drive {
+    fn drive(&self, action: &Action, excitation: Option<Excitation>, from: RollState) -> Drive {
+        if let Some(excitation) = excitation {
+            return Drive::Excited(excitation);
+        }
         match *action {
             Action::Release { fade_s, .. } if fade_s > 0.0 => {
                 let still = RollState { rate_rad_per_s: 0.0, ..from };
@@ -219,6 +257,7 @@ struct Imposed {
 enum Path {
     Heeling(Heeling),
     Oscillating(Oscillating),
+    Following(Following),
 }
 
 impl Path {
@@ -226,6 +265,7 @@ impl Path {
         match self {
             Self::Heeling(path) => path.at(elapsed_s),
             Self::Oscillating(path) => path.at(elapsed_s),
+            Self::Following(path) => path.at(elapsed_s),
         }
     }
 }

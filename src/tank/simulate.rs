@@ -36,6 +36,8 @@ fn draws(seed: u64, pass_index: usize, purpose: u64) -> ChaCha8Rng {
 
 /// Purpose of the draw of the pass-to-pass scatter; the instruments use the numbers below it.
 const SCATTER: u64 = 15;
+/// Purpose of the draw of irregular excitations.
+const EXCITATION: u64 = 14;
 
 /// Simulates the pass at `pass_index`, counting repeats, with all draws from `seed`.
 ///
@@ -58,7 +60,14 @@ pub fn simulate_pass(scenario: &Scenario, pass_index: usize, seed: u64) -> Simul
     let froude = froude_of(speed_m_s);
     let b3_s = damping_at(condition, froude).b3_s;
     let model = rolling_model(scenario, pass, condition, b3_s);
-    let scene = Scene { model, carriage, waves: pass.waves, b1_per_s: &b1_per_s };
+    // Far apart in the stream, so that actions do not share draws.
+    let excitation = |action_index: usize| {
+        let mut rng = draws(seed, pass_index, EXCITATION);
+        rng.set_word_pos((action_index as u128) << 20);
+        rng
+    };
+    let scene =
+        Scene { model, carriage, waves: pass.waves, b1_per_s: &b1_per_s, draws: &excitation };
     let stretches = scene.play(&pass.actions);
     let duration_s = stretches.last().map_or(0.0, |s| s.end_s);
     let view = View { scenario, pass, carriage: &carriage, stretches: &stretches };

@@ -38,7 +38,7 @@ pub struct PassTruth {
 pub enum TrueKind {
     /// Free rolling.
     Decay,
-    /// Steady rolling under the rod.
+    /// Rolling under the rod.
     Forced,
 }
 
@@ -67,7 +67,8 @@ pub enum TrueEnd {
 pub struct TrueRun {
     /// Decay or forced.
     pub kind: TrueKind,
-    /// First instant at which the model rolls freely, or steadily under the rod [s].
+    /// First instant at which the model rolls freely, steadily under the rod, or under an
+    /// excitation that does not repeat [s].
     pub start_s: f64,
     /// Last usable instant [s].
     pub end_s: f64,
@@ -87,7 +88,7 @@ pub struct TrueRun {
     pub initial_roll_rate_rad_per_s: f64,
     /// Total inertia `I + dI` [kg m2].
     pub inertia_kg_m2: f64,
-    /// Frequency of the excitation [rad/s], forced runs only.
+    /// Frequency of the excitation [rad/s], forced runs that repeat only.
     pub excitation_rad_s: Option<f64>,
     /// Imposed roll amplitude [rad], where one is imposed.
     pub imposed_amplitude_rad: Option<f64>,

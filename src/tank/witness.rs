@@ -57,6 +57,13 @@ impl Witness<'_> {
                     refuse(RejectedKind::StartUp, start_s, steady_s);
                     self.forced(at, steady_s, &mut runs, &mut unusable);
                 }
+                // Nothing need be steady where the moment is measured throughout.
+                Action::ForcedSweep { .. }
+                | Action::ForcedIrregular { .. }
+                | Action::DrivenSweep { .. }
+                | Action::DrivenIrregular { .. } => {
+                    self.forced(at, start_s, &mut runs, &mut unusable);
+                }
             }
         }
         unusable.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
@@ -126,10 +133,14 @@ impl Witness<'_> {
         runs: &mut Vec<TrueRun>,
         unusable: &mut Vec<TrueRejection>,
     ) {
-        let (Action::Forced { frequency_rad_s, .. } | Action::Driven { frequency_rad_s, .. }) =
-            self.stretches[at].action
-        else {
-            return;
+        let action = self.stretches[at].action;
+        let frequency_rad_s = match (action, action.band()) {
+            (
+                Action::Forced { frequency_rad_s, .. } | Action::Driven { frequency_rad_s, .. },
+                _,
+            ) => frequency_rad_s,
+            (_, Some(band)) => band.middle_rad_s(),
+            _ => return,
         };
         let period_s = std::f64::consts::TAU / frequency_rad_s;
         let carriage = &self.scene.carriage;
@@ -175,6 +186,7 @@ impl Witness<'_> {
             None => TrueEnd::RecordingEnded,
             Some(Action::Strike { .. }) => TrueEnd::ReStruck,
             Some(Action::Forced { .. } | Action::Driven { .. }) => TrueEnd::ExcitationChanged,
+            Some(action) if action.band().is_some() => TrueEnd::ExcitationChanged,
             Some(_) => TrueEnd::Caught,
         }
     }
@@ -203,6 +215,7 @@ impl Witness<'_> {
                 (Some(frequency_rad_s), Some(amplitude_rad))
             }
             Action::Driven { frequency_rad_s, .. } => (Some(frequency_rad_s), None),
+            Action::ForcedSweep { amplitude_rad, .. } => (None, Some(amplitude_rad)),
             _ => (None, None),
         };
         TrueRun {
