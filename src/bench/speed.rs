@@ -12,7 +12,9 @@ use crate::campaign;
 use crate::inverse::decay::{moment, solve};
 use crate::inverse::identification::Method;
 use crate::inverse::paper::exact::exact;
-use crate::inverse::paper::{ChainSettings, Convolution, Hyperpriors, PriorPower, sample};
+use crate::inverse::paper::{
+    ChainSettings, Convolution, Hyperpriors, PaperError, PriorPower, sample,
+};
 use crate::inverse::state_space::posterior::Quadrature;
 use crate::inverse::{Setting, identify};
 use crate::pipeline::{self, Options};
@@ -32,7 +34,8 @@ fn figure(name: impl Into<String>, value: String) -> Figure {
     Figure { name: name.into(), value }
 }
 
-const SETTING: Setting =
+/// Nothing but a decay's own record.
+pub const SETTING: Setting =
     Setting { restoring_n_m_per_rad: 1.0, exciter: None, method: Method::Exact, seed: 1 };
 
 /// Natural frequency of every decay here [rad/s].
@@ -41,7 +44,7 @@ const FREQUENCY_RAD_S: f64 = 6.905;
 const PER_PERIOD: f64 = 80.0;
 
 /// A decay of `n_samples` that falls to a fifteenth, `per_period` of them in each roll period.
-fn decay(n_samples: usize, per_period: f64) -> Run {
+pub fn decay(n_samples: usize, per_period: f64) -> Run {
     let mut rng = ChaCha8Rng::seed_from_u64(n_samples as u64);
     let step_s = std::f64::consts::TAU / FREQUENCY_RAD_S / per_period;
     let damping_per_s = 2.0 * 15_f64.ln() / (step_s * n_samples as f64);
@@ -129,15 +132,23 @@ fn resident_bytes(name: &str) -> f64 {
     1024.0 * kib.unwrap_or(0.0)
 }
 
+/// The paper's inverse problem of a decay: observable `g` [rad] and `H`.
+///
+/// # Errors
+/// Where the step does not resolve the oscillation.
+pub fn paper_problem(n_samples: usize) -> Result<(Vec<f64>, Convolution), PaperError> {
+    let run = decay(n_samples, 40.0);
+    let step_s = run.roll.time_s[1];
+    let convolution = Convolution::new(n_samples, step_s, FREQUENCY_RAD_S)?;
+    let g = convolution.observable(&run.roll.value, 0.17, 0.0, None);
+    Ok((g, convolution))
+}
+
 /// The paper's sampler against the exact posterior of the same problem, 500 samples.
 pub fn against_the_chain() -> Vec<Figure> {
     const N_SAMPLES: usize = 500;
     let run = decay(N_SAMPLES, 40.0);
-    let step_s = run.roll.time_s[1];
-    let Ok(convolution) = Convolution::new(N_SAMPLES, step_s, FREQUENCY_RAD_S) else {
-        return Vec::new();
-    };
-    let g = convolution.observable(&run.roll.value, 0.17, 0.0, None);
+    let Ok((g, convolution)) = paper_problem(N_SAMPLES) else { return Vec::new() };
     let hyper = Hyperpriors::PAPER;
     let one = ChainSettings { n_chains: 1, ..ChainSettings::paper(1) };
     let chain_s = fastest_s(3, || sample(&g, &convolution, &hyper, &one));

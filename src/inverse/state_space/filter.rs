@@ -6,7 +6,7 @@
 //! are kept as triangular roots in units of the roll noise: a step is one small orthogonal
 //! reduction and no digits are lost, however short the step.
 
-use super::matrix::{Matrix, apply, triangular_root};
+use super::matrix::{Matrix, apply, joined_root, product};
 use super::transition::{Step, Transition};
 use super::triangle::Triangle;
 
@@ -109,18 +109,19 @@ pub fn filter<const N: usize>(
     let mut whitened = vec![0.0; columns.len()];
     let mut predicted = prior.start();
     let mut root = predicted;
-    let mut log_determinant = 0.0;
+    let (mut log_determinant, mut determinant) = (0.0, 1.0);
     let mut step = Step { f: [[0.0; N]; N], g: [[0.0; N]; N] };
     let mut width = f64::NAN;
     let mut settled = false;
     for (i, &now) in tau.iter().enumerate() {
         let mut same_step = true;
         if i > 0 {
-            let before = width;
-            width = now - tau[i - 1];
-            same_step = prior.is_even() && before.to_bits() == width.to_bits();
+            let passed = now - tau[i - 1];
+            // Stamps of an even record differ by one width but for their rounding.
+            same_step = prior.is_even() && (passed - width).abs() <= 2.0 * f64::EPSILON * now;
             if !same_step {
                 settled = false;
+                width = passed;
                 step = prior.step(i, width);
             }
             for state in &mut states {
@@ -136,7 +137,13 @@ pub fn filter<const N: usize>(
         let reach = predicted[0][0];
         let variance = 1.0 + reach * reach;
         let deviation = variance.sqrt();
-        log_determinant += variance.ln();
+        // A logarithm of a few dozen factors at a time; each lies between 1 and what the misfit
+        // reaches in units of the noise, so their product is far from overflowing.
+        determinant *= variance;
+        if determinant > 1e100 {
+            log_determinant += determinant.ln();
+            determinant = 1.0;
+        }
         for ((out, state), column) in whitened.iter_mut().zip(&states).zip(columns) {
             *out = column.at(i) - state[0];
         }
@@ -161,6 +168,7 @@ pub fn filter<const N: usize>(
         }
     }
     triangle.settle();
+    log_determinant += determinant.ln();
     Filtered { log_determinant, n_samples: tau.len(), triangle }
 }
 
@@ -183,15 +191,7 @@ impl Column<'_> {
 
 /// The root of the covariance after a step.
 fn spread<const N: usize>(step: &Step<N>, root: &Matrix<N>) -> Matrix<N> {
-    let mut columns = [[0.0; N]; 16];
-    for (j, column) in columns.iter_mut().take(N).enumerate() {
-        let from: [f64; N] = std::array::from_fn(|i| root[i][j]);
-        *column = apply(&step.f, &from);
-    }
-    for (j, column) in columns[N..2 * N].iter_mut().enumerate() {
-        *column = std::array::from_fn(|i| step.g[i][j]);
-    }
-    triangular_root(&mut columns[..2 * N])
+    joined_root(product(&step.f, root), step.g)
 }
 
 /// Whether a covariance, or its inverse, has stopped changing, so that what follows can be kept.

@@ -107,6 +107,51 @@ pub fn triangular_root<const N: usize>(columns: &mut [[f64; N]]) -> Matrix<N> {
     root
 }
 
+/// The lower triangular `L` with `L L' = A A' + B B'`, by Householder reflections of `[A B]`.
+///
+/// What [`triangular_root`] does, for the one size that every step of the filter needs.
+pub fn joined_root<const N: usize>(mut a: Matrix<N>, mut b: Matrix<N>) -> Matrix<N> {
+    let mut root = [[0.0; N]; N];
+    for pivot in 0..N {
+        let (lead, tail) = (a[pivot], b[pivot]);
+        let mut square = 0.0;
+        for j in pivot..N {
+            square += lead[j] * lead[j];
+        }
+        for value in tail {
+            square += value * value;
+        }
+        if square == 0.0 {
+            continue;
+        }
+        let norm = square.sqrt();
+        let signed = if lead[pivot] > 0.0 { -norm } else { norm };
+        // The reflector is v = row - signed e_1, and v'v / 2 = norm (norm + |head|).
+        let per_half_square = (norm * (norm + lead[pivot].abs())).recip();
+        // The sign is free; a positive diagonal makes the root unique.
+        let sign = signed.signum();
+        root[pivot][pivot] = norm;
+        for row in pivot + 1..N {
+            let mut along = -signed * a[row][pivot];
+            for j in pivot..N {
+                along += a[row][j] * lead[j];
+            }
+            for j in 0..N {
+                along += b[row][j] * tail[j];
+            }
+            let factor = along * per_half_square;
+            root[row][pivot] = sign * (a[row][pivot] - factor * (lead[pivot] - signed));
+            for j in pivot + 1..N {
+                a[row][j] -= factor * lead[j];
+            }
+            for j in 0..N {
+                b[row][j] -= factor * tail[j];
+            }
+        }
+    }
+    root
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -123,6 +168,20 @@ mod tests {
                 assert!(j <= i || root[i][j] == 0.0);
             }
         }
+    }
+
+    #[test]
+    fn the_joined_root_is_the_root_of_all_columns() {
+        let a = [[3.0, 1.0, -2.0], [0.5, 4.0, 1.0], [-1.0, 2.0, 0.1]];
+        let b = [[2.0, 0.0, 0.0], [0.3, 1.5, 0.0], [-0.7, 0.2, 0.0]];
+        let column = |m: &Matrix<3>, j: usize| [m[0][j], m[1][j], m[2][j]];
+        let mut columns = [0, 1, 2].map(|j| column(&a, j)).to_vec();
+        columns.extend([0, 1, 2].map(|j| column(&b, j)));
+        let (whole, joined) = (triangular_root(&mut columns), joined_root(a, b));
+        for (x, y) in whole.iter().flatten().zip(joined.iter().flatten()) {
+            assert!((x - y).abs() < 1e-14, "{x} {y}");
+        }
+        assert_eq!(joined_root([[0.0; 2]; 2], [[0.0; 2]; 2]), [[0.0; 2]; 2]);
     }
 
     #[test]

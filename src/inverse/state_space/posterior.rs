@@ -70,7 +70,7 @@ pub struct Quadrature {
 
 impl Quadrature {
     /// What a band needs: its ends are right to a thousandth of their distance.
-    pub const BAND: Self = Self { step_sd: 1.0, negligible: 1e-3 };
+    pub const BAND: Self = Self { step_sd: 1.4, negligible: 1e-3 };
     /// As many digits as the arithmetic carries.
     pub const EXACT: Self = Self { step_sd: 0.4, negligible: 1e-15 };
 }
@@ -89,6 +89,28 @@ pub struct MomentProblem<'a, F> {
     pub hyperprior: Hyperprior,
     /// How finely the smoothness is integrated over.
     pub quadrature: Quadrature,
+}
+
+/// The bell curve through three evenly spaced nodes.
+struct Bell {
+    /// Logarithm of the intensity at its top.
+    mode: f64,
+    /// Its standard deviation.
+    width: f64,
+}
+
+impl Bell {
+    fn through([left, middle, right]: &[Node; 3]) -> Self {
+        let reach = 0.5 * (right.log_intensity - left.log_intensity);
+        let slope = (right.log_weight - left.log_weight) / (2.0 * reach);
+        let bend = (right.log_weight - 2.0 * middle.log_weight + left.log_weight) / reach.powi(2);
+        if bend >= 0.0 {
+            // No top among them: the nodes may lie anywhere that the prior allows.
+            return Self { mode: middle.log_intensity, width: 1.0 };
+        }
+        let mode = middle.log_intensity + (-slope / bend).clamp(-reach, reach);
+        Self { mode, width: (-bend).sqrt().recip().clamp(0.01, 2.0) }
+    }
 }
 
 /// The nodes of a quadrature with what they sum to.
@@ -173,67 +195,58 @@ impl<F> MomentProblem<'_, F> {
     {
         let at = |x: f64| self.node::<N, T>(x);
         let (low, high) = LOG_INTENSITY_RANGE;
-        let mut top = Self::uphill(&at);
-        let mut width: f64 = 1.0;
-        for _ in 0..2 {
-            // Newton's step on the parabola through three points finds mode and width.
-            let mode = top.log_intensity;
-            let reach = 0.5 * width;
-            let (left, right) = (at(mode - reach), at(mode + reach));
-            let slope = (right.log_weight - left.log_weight) / (2.0 * reach);
-            let bend =
-                (right.log_weight - 2.0 * top.log_weight + left.log_weight) / (reach * reach);
-            if bend >= 0.0 {
+        let mut bell = Bell::through(&Self::uphill(&at));
+        // A trapezoidal rule over a bell curve gains digits with the square of its fineness.
+        let mut step = self.quadrature.step_sd * bell.width;
+        let mut middle = [-1.0, 0.0, 1.0].map(|side| at(bell.mode + side * step));
+        for _ in 0..3 {
+            let seen = Bell::through(&middle);
+            let is_near = (seen.mode - bell.mode).abs() < 0.5 * bell.width;
+            if is_near && (0.75..1.33).contains(&(seen.width / bell.width)) {
                 break;
             }
-            width = (-bend).sqrt().recip().clamp(0.01, 2.0);
-            top = at((mode - (slope / bend).clamp(-1.5, 1.5)).clamp(low, high));
+            let stride = 1.5 * bell.width;
+            let mode = seen.mode.clamp(bell.mode - stride, bell.mode + stride).clamp(low, high);
+            bell = Bell { mode, width: seen.width };
+            step = self.quadrature.step_sd * bell.width;
+            middle = [-1.0, 0.0, 1.0].map(|side| at(bell.mode + side * step));
         }
-        let (middle, mode) = (top, top.log_intensity);
-        // A trapezoidal rule over a bell curve gains digits with the square of its fineness.
-        let step = self.quadrature.step_sd * width;
-        let least = middle.log_weight + self.quadrature.negligible.ln();
-        let side = |sign: f64| {
-            let heavy = |node: &Node| node.log_weight > least;
-            let mut nodes = Vec::new();
-            for i in 1..200_u32 {
-                let node = at(mode + sign * step * f64::from(i));
-                let more = heavy(&node);
-                nodes.push(node);
-                if !more {
+        let [left, top, right] = middle;
+        let least = top.log_weight + self.quadrature.negligible.ln();
+        let side = |first: Node, sign: f64| {
+            let mut nodes = vec![first];
+            for i in 2..200_u32 {
+                if nodes[nodes.len() - 1].log_weight <= least {
                     break;
                 }
+                nodes.push(at(bell.mode + sign * step * f64::from(i)));
             }
             nodes
         };
         let nodes: Vec<Node> =
-            side(-1.0).into_iter().rev().chain([middle]).chain(side(1.0)).collect();
+            side(left, -1.0).into_iter().rev().chain([top]).chain(side(right, 1.0)).collect();
         let top = nodes.iter().map(|n| n.log_weight).fold(f64::NEG_INFINITY, f64::max);
         let total: f64 = nodes.iter().map(|n| (n.log_weight - top).exp()).sum();
         Weighed { nodes, log_evidence: top + (total * step).ln() }
     }
 
-    /// A node near the mode, by strides uphill from the middle of the range.
-    fn uphill(at: &impl Fn(f64) -> Node) -> Node {
+    /// The best of evenly spaced nodes between its neighbours, by strides uphill from the middle of
+    /// the range.
+    fn uphill(at: &impl Fn(f64) -> Node) -> [Node; 3] {
         const STRIDE: f64 = 2.0;
         let (low, high) = LOG_INTENSITY_RANGE;
-        let start = at(0.5 * (low + high));
-        let (left, right) = (at(start.log_intensity - STRIDE), at(start.log_intensity + STRIDE));
-        let (mut best, sign) =
-            if right.log_weight > left.log_weight { (right, STRIDE) } else { (left, -STRIDE) };
-        if best.log_weight < start.log_weight {
-            return start;
-        }
+        let middle = 0.5 * (low + high);
+        let mut three = [-STRIDE, 0.0, STRIDE].map(|x| at(middle + x));
         loop {
-            let next = best.log_intensity + sign;
-            if !(low..=high).contains(&next) {
-                return best;
+            let [left, best, right] = three;
+            let (next, sign) =
+                if right.log_weight > left.log_weight { (right, 1.0) } else { (left, -1.0) };
+            let beyond = next.log_intensity + sign * STRIDE;
+            if next.log_weight <= best.log_weight || !(low..=high).contains(&beyond) {
+                return three;
             }
-            let node = at(next);
-            if node.log_weight < best.log_weight {
-                return best;
-            }
-            best = node;
+            let end = at(beyond);
+            three = if sign > 0.0 { [best, next, end] } else { [end, next, best] };
         }
     }
 
