@@ -25,6 +25,7 @@ mod sampler_draws_the_exact_posterior;
 mod sampler_says_what_it_did;
 mod synthetic_results;
 mod synthetic_roll;
+mod the_band_is_sharp;
 mod the_command_line;
 mod the_exact_posterior_is_the_dense_one;
 mod the_json_contract_holds;
