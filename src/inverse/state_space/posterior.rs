@@ -138,7 +138,6 @@ impl<F> MomentProblem<'_, F> {
     {
         let Weighed { nodes, log_evidence } = weighed;
         let top = nodes.iter().map(|n| n.log_weight).fold(f64::NEG_INFINITY, f64::max);
-        let total: f64 = nodes.iter().map(|n| (n.log_weight - top).exp()).sum();
         let columns = self.columns();
         let n_flat = columns.len() - 1;
         let mut mean = vec![[0.0; 3]; self.tau.len()];
@@ -146,7 +145,9 @@ impl<F> MomentProblem<'_, F> {
         let mut noise_variance = 0.0;
         // Moments about the heaviest node's mean, so that no digits are lost.
         let mut centre: Vec<[f64; 3]> = Vec::new();
-        let mut order: Vec<&Node> = nodes.iter().collect();
+        let least = top + self.quadrature.negligible.ln();
+        let mut order: Vec<&Node> = nodes.iter().filter(|n| n.log_weight > least).collect();
+        let total: f64 = order.iter().map(|n| (n.log_weight - top).exp()).sum();
         order.sort_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
         for node in order {
             let share = (node.log_weight - top).exp() / total;
@@ -201,8 +202,9 @@ impl<F> MomentProblem<'_, F> {
         let mut middle = [-1.0, 0.0, 1.0].map(|side| at(bell.mode + side * step));
         for _ in 0..3 {
             let seen = Bell::through(&middle);
-            let is_near = (seen.mode - bell.mode).abs() < 0.5 * bell.width;
-            if is_near && (0.75..1.33).contains(&(seen.width / bell.width)) {
+            let is_near = (seen.mode - bell.mode).abs() < 0.7 * bell.width;
+            // A step a fifth too wide costs a digit or two, one too narrow a node or two.
+            if is_near && (0.8..1.6).contains(&(seen.width / bell.width)) {
                 break;
             }
             let stride = 1.5 * bell.width;
