@@ -15,7 +15,7 @@ use crate::inverse::froude_law::{self, Point};
 use crate::inverse::mixture;
 
 /// Amplitudes at which the equivalent damping is judged, as shares of the initial one.
-const AMPLITUDES: [(f64, &str); 3] =
+pub(super) const AMPLITUDES: [(f64, &str); 3] =
     [(0.75, "b_eq at 75 %"), (0.5, "b_eq at 50 %"), (0.3, "b_eq at 30 %")];
 
 /// Every rank of a calibration.
@@ -76,7 +76,7 @@ fn add(ranks: &mut Vec<Ranks>, told: Told) {
 fn campaign(rng: &mut ChaCha8Rng) -> CampaignTold {
     let campaign = DrawnCampaign::draw(rng);
     let mut told = CampaignTold::default();
-    let mut points = Vec::new();
+    let (mut points, mut paper_points) = (Vec::new(), Vec::new());
     for froude in FROUDE {
         let drawn = DrawnRun::draw(&campaign, froude, rng);
         let instant = rng.random::<f64>();
@@ -84,7 +84,10 @@ fn campaign(rng: &mut ChaCha8Rng) -> CampaignTold {
             Err(reason) => told.refused.push(reason),
             Ok(solved) => {
                 told.exact.extend(of_run(&drawn, &solved, instant));
-                told.paper.extend(paper_hyperpriors::of_run(&drawn, &solved, instant));
+                if let Some(paper) = paper_hyperpriors::of_run(&drawn, &solved, instant) {
+                    told.paper.extend(paper.below);
+                    paper_points.push(paper.point);
+                }
                 points.push(Point {
                     froude,
                     b1_per_s: mixture::estimate(&solved.posterior.cubic_law(1.0, 0.0)),
@@ -93,9 +96,10 @@ fn campaign(rng: &mut ChaCha8Rng) -> CampaignTold {
             }
         }
     }
-    if points.len() == FROUDE.len() {
-        let below = froude_law::probability_below(&points, campaign.kappa);
-        told.exact.push(("kappa", below));
+    for (points, told) in [(points, &mut told.exact), (paper_points, &mut told.paper)] {
+        if points.len() == FROUDE.len() {
+            told.push(("kappa", froude_law::probability_below(&points, campaign.kappa)));
+        }
     }
     told
 }

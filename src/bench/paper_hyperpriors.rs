@@ -2,26 +2,34 @@
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
+use super::calibration::AMPLITUDES;
 use super::drawn_run::DrawnRun;
 use crate::inverse::decay::Solved;
 use crate::inverse::estimate::Estimate;
+use crate::inverse::froude_law::Point;
 use crate::inverse::paper::exact::exact;
 use crate::inverse::paper::{Convolution, Hyperpriors, PriorPower, plain_fit};
 use crate::inverse::record::Record;
 use crate::inverse::state_space::posterior::Quadrature;
 use crate::roll::damping::cubic_weight;
 
+/// What the paper says of a run.
+pub(super) struct PaperTold {
+    /// Probability below the truth of each quantity.
+    pub(super) below: Vec<(&'static str, f64)>,
+    /// Its coefficients, for the speed law.
+    pub(super) point: Point,
+}
+
 /// Probabilities below the truth by the paper's posterior (2.13), computed without its chain.
 ///
 /// Frequency, zero and initial state, which the paper takes as known, are the true ones.
-pub(super) fn of_run(drawn: &DrawnRun, solved: &Solved, instant: f64) -> Vec<(&'static str, f64)> {
+pub(super) fn of_run(drawn: &DrawnRun, solved: &Solved, instant: f64) -> Option<PaperTold> {
     let record = evened(&solved.thinned);
     let truth = &drawn.truth;
     let w = truth.natural_frequency_rad_s;
     let step_s = record.time_s[1];
-    let Ok(convolution) = Convolution::new(record.roll_rad.len(), step_s, w) else {
-        return Vec::new();
-    };
+    let convolution = Convolution::new(record.roll_rad.len(), step_s, w).ok()?;
     let fit = &solved.posterior.linearised;
     let zero_rad = fit.point.zero_rad;
     let roll: Vec<f64> = record.roll_rad.iter().map(|r| r - zero_rad).collect();
@@ -39,14 +47,16 @@ pub(super) fn of_run(drawn: &DrawnRun, solved: &Solved, instant: f64) -> Vec<(&'
     let rates: Vec<f64> = fit.motion.iter().map(|m| m.roll_rate_rad_per_s).collect();
     let law = plain_fit(&rates, &posterior.mean);
     let time_s = record.origin_s + record.time_s[sample];
-    let amplitude_rad = 0.5 * drawn.amplitude_rad;
-    let equivalent = law.combination(1.0, cubic_weight(w, amplitude_rad));
-    vec![
-        ("U(t)", below(&moment, drawn.moment_per_s2(time_s))),
-        ("b_eq at 50 %", below(&equivalent, drawn.equivalent_per_s(amplitude_rad))),
-        ("b1", below(&law.b1_per_s, truth.b1_per_s)),
-        ("b3", below(&law.b3_s, truth.b3_s)),
-    ]
+    let mut told = vec![("U(t)", below(&moment, drawn.moment_per_s2(time_s)))];
+    for (share, name) in AMPLITUDES {
+        let amplitude_rad = share * drawn.amplitude_rad;
+        let equivalent = law.combination(1.0, cubic_weight(w, amplitude_rad));
+        told.push((name, below(&equivalent, drawn.equivalent_per_s(amplitude_rad))));
+    }
+    told.push(("b1", below(&law.b1_per_s, truth.b1_per_s)));
+    told.push(("b3", below(&law.b3_s, truth.b3_s)));
+    let point = Point { froude: drawn.froude, b1_per_s: law.b1_per_s, b3_s: law.b3_s };
+    Some(PaperTold { below: told, point })
 }
 
 /// The record on an even grid, which drawn runs are but for rounding.

@@ -86,7 +86,7 @@ impl Closed {
         let end_s = self.end_s();
         let why = format!("{} at {end_s:.1} s", end.clause());
         let mut unused = Unused::new(end_s, Cause::After(end, why));
-        cycles.iter().for_each(|cycle| unused.extend(cycle));
+        unused.extend_by(cycles);
         unused
     }
 
@@ -164,7 +164,9 @@ impl Driven {
 
     /// Takes the half cycles of what seemed to be a run and is none.
     pub(super) fn take_back(&mut self, cycles: &[Cycle], records: &Records) {
-        cycles.iter().for_each(|cycle| self.push(cycle, None, records));
+        for cycle in cycles {
+            self.push(cycle, None, records);
+        }
     }
 
     /// A steady run of `cycles` has ended where the next stretch begins.

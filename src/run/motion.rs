@@ -306,7 +306,7 @@ impl Motion {
             let first = self.cycles[0];
             let unused = self.unused.get_or_insert_with(|| Unused::from_cycle(&first, None));
             let crept: Vec<Cycle> = self.cycles.drain(..n).collect();
-            crept.iter().for_each(|cycle| unused.extend(cycle));
+            unused.extend_by(&crept);
             self.driven.take_back(&crept, closer.records);
         }
     }
@@ -343,7 +343,7 @@ impl Motion {
             self.state = State::Searching;
             self.driven.take_back(&all, closer.records);
             let unused = self.unused.get_or_insert_with(|| Unused::from_cycle(first, None));
-            all.iter().for_each(|cycle| unused.extend(cycle));
+            unused.extend_by(&all);
             return Vec::new();
         }
         self.flush(start_s, closer);

@@ -59,6 +59,13 @@ impl Unused {
         Self::new(cycle.half.start.time_s, cause)
     }
 
+    /// Takes more half cycles that no run uses.
+    pub(super) fn extend_by(&mut self, cycles: &[Cycle]) {
+        for cycle in cycles {
+            self.extend(cycle);
+        }
+    }
+
     /// Takes another half cycle that no run uses.
     pub(super) fn extend(&mut self, cycle: &Cycle) {
         if self.last.len() == N_REMEMBERED {

@@ -77,10 +77,7 @@ impl Scenario {
                 Action::Strike { impulse_n_m_s, .. } => {
                     within(table, &key("impulse_n_m_s"), impulse_n_m_s, -impulse, impulse)?;
                 }
-                Action::Driven { moment_n_m, .. } => {
-                    within(table, &key("moment_n_m"), moment_n_m, -moment, moment)?;
-                }
-                Action::DrivenSweep { moment_n_m, .. } => {
+                Action::Driven { moment_n_m, .. } | Action::DrivenSweep { moment_n_m, .. } => {
                     within(table, &key("moment_n_m"), moment_n_m, -moment, moment)?;
                 }
                 Action::DrivenIrregular { rms_n_m, .. } => {

@@ -115,10 +115,7 @@ pub fn joined_root<const N: usize>(mut a: Matrix<N>, mut b: Matrix<N>) -> Matrix
     for pivot in 0..N {
         let (lead, tail) = (a[pivot], b[pivot]);
         let mut square = 0.0;
-        for j in pivot..N {
-            square += lead[j] * lead[j];
-        }
-        for value in tail {
+        for value in lead[pivot..].iter().chain(&tail) {
             square += value * value;
         }
         if square == 0.0 {
@@ -133,19 +130,19 @@ pub fn joined_root<const N: usize>(mut a: Matrix<N>, mut b: Matrix<N>) -> Matrix
         root[pivot][pivot] = norm;
         for row in pivot + 1..N {
             let mut along = -signed * a[row][pivot];
-            for j in pivot..N {
-                along += a[row][j] * lead[j];
+            for (value, lead) in a[row][pivot..].iter().zip(&lead[pivot..]) {
+                along += value * lead;
             }
-            for j in 0..N {
-                along += b[row][j] * tail[j];
+            for (value, tail) in b[row].iter().zip(&tail) {
+                along += value * tail;
             }
             let factor = along * per_half_square;
             root[row][pivot] = sign * (a[row][pivot] - factor * (lead[pivot] - signed));
-            for j in pivot + 1..N {
-                a[row][j] -= factor * lead[j];
+            for (value, lead) in a[row].iter_mut().zip(&lead).skip(pivot + 1) {
+                *value -= factor * lead;
             }
-            for j in 0..N {
-                b[row][j] -= factor * tail[j];
+            for (value, tail) in b[row].iter_mut().zip(&tail) {
+                *value -= factor * tail;
             }
         }
     }
