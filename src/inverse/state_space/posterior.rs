@@ -91,7 +91,7 @@ pub struct MomentProblem<'a, F> {
     pub quadrature: Quadrature,
 }
 
-/// The bell curve through three evenly spaced nodes.
+/// The bell curve through three nodes.
 struct Bell {
     /// Logarithm of the intensity at its top.
     mode: f64,
@@ -101,15 +101,18 @@ struct Bell {
 
 impl Bell {
     fn through([left, middle, right]: &[Node; 3]) -> Self {
-        let reach = 0.5 * (right.log_intensity - left.log_intensity);
-        let slope = (right.log_weight - left.log_weight) / (2.0 * reach);
-        let bend = (right.log_weight - 2.0 * middle.log_weight + left.log_weight) / reach.powi(2);
+        let slope = |a: &Node, b: &Node| {
+            (b.log_weight - a.log_weight) / (b.log_intensity - a.log_intensity)
+        };
+        let (before, after) = (slope(left, middle), slope(middle, right));
+        let bend = 2.0 * (after - before) / (right.log_intensity - left.log_intensity);
         if bend >= 0.0 {
             // No top among them: the nodes may lie anywhere that the prior allows.
             return Self { mode: middle.log_intensity, width: 1.0 };
         }
-        let mode = middle.log_intensity + (-slope / bend).clamp(-reach, reach);
-        Self { mode, width: (-bend).sqrt().recip().clamp(0.01, 2.0) }
+        // The slopes are those half-way between the nodes.
+        let between = 0.5 * (left.log_intensity + middle.log_intensity);
+        Self { mode: between - before / bend, width: (-bend).sqrt().recip().clamp(0.01, 2.0) }
     }
 }
 
@@ -195,25 +198,21 @@ impl<F> MomentProblem<'_, F> {
         F: Fn(f64) -> T,
     {
         let at = |x: f64| self.node::<N, T>(x);
-        let (low, high) = LOG_INTENSITY_RANGE;
-        let mut bell = Bell::through(&Self::uphill(&at));
+        let (top, mut width) = Self::summit(&at);
         // A trapezoidal rule over a bell curve gains digits with the square of its fineness.
-        let mut step = self.quadrature.step_sd * bell.width;
-        let mut middle = [-1.0, 0.0, 1.0].map(|side| at(bell.mode + side * step));
+        let mut step = self.quadrature.step_sd * width;
+        let mut sides = [-step, step].map(|x| at(top.log_intensity + x));
         for _ in 0..3 {
-            let seen = Bell::through(&middle);
-            let is_near = (seen.mode - bell.mode).abs() < 0.7 * bell.width;
+            let seen = Bell::through(&[sides[0], top, sides[1]]);
             // A step a fifth too wide costs a digit or two, one too narrow a node or two.
-            if is_near && (0.8..1.6).contains(&(seen.width / bell.width)) {
+            if (0.8..1.3).contains(&(seen.width / width)) {
                 break;
             }
-            let stride = 1.5 * bell.width;
-            let mode = seen.mode.clamp(bell.mode - stride, bell.mode + stride).clamp(low, high);
-            bell = Bell { mode, width: seen.width };
-            step = self.quadrature.step_sd * bell.width;
-            middle = [-1.0, 0.0, 1.0].map(|side| at(bell.mode + side * step));
+            width = seen.width;
+            step = self.quadrature.step_sd * width;
+            sides = [-step, step].map(|x| at(top.log_intensity + x));
         }
-        let [left, top, right] = middle;
+        let [left, right] = sides;
         let least = top.log_weight + self.quadrature.negligible.ln();
         let side = |first: Node, sign: f64| {
             let mut nodes = vec![first];
@@ -221,7 +220,7 @@ impl<F> MomentProblem<'_, F> {
                 if nodes[nodes.len() - 1].log_weight <= least {
                     break;
                 }
-                nodes.push(at(bell.mode + sign * step * f64::from(i)));
+                nodes.push(at(top.log_intensity + sign * step * f64::from(i)));
             }
             nodes
         };
@@ -230,6 +229,30 @@ impl<F> MomentProblem<'_, F> {
         let top = nodes.iter().map(|n| n.log_weight).fold(f64::NEG_INFINITY, f64::max);
         let total: f64 = nodes.iter().map(|n| (n.log_weight - top).exp()).sum();
         Weighed { nodes, log_evidence: top + (total * step).ln() }
+    }
+
+    /// A node near the mode and the width there: strides uphill, then parabolas between them.
+    fn summit(at: &impl Fn(f64) -> Node) -> (Node, f64) {
+        const N_PARABOLAS_MAX: usize = 8;
+        let mut three = Self::uphill(at);
+        let mut bell = Bell::through(&three);
+        for _ in 0..N_PARABOLAS_MAX {
+            let [left, best, right] = three;
+            let (low, high) = (left.log_intensity, right.log_intensity);
+            let away = (bell.mode - best.log_intensity).abs();
+            if away < 0.6 * bell.width || !(low < bell.mode && bell.mode < high) {
+                break;
+            }
+            let next = at(bell.mode);
+            three = match (bell.mode > best.log_intensity, next.log_weight > best.log_weight) {
+                (true, true) => [best, next, right],
+                (true, false) => [left, best, next],
+                (false, true) => [left, next, best],
+                (false, false) => [next, best, right],
+            };
+            bell = Bell::through(&three);
+        }
+        (three[1], bell.width)
     }
 
     /// The best of evenly spaced nodes between its neighbours, by strides uphill from the middle of
