@@ -18,7 +18,7 @@ const AMPLITUDE_RAD: f64 = 5.0 / 180.0 * std::f64::consts::PI;
 /// Natural frequency [rad/s], `b1` [1/s], `b3` [s], initial roll [rad] and rate [rad/s], zero [rad].
 type Unknowns = [f64; 6];
 
-/// Decays of Table 2 at Fr 0, 0.2 and 0.4: bare hull, then bilge keels; 15 deg at the start.
+/// Decays of Table 2 at Fr 0 and 0.2: bare hull, then bilge keels; 15 deg at the start.
 const ROWS: [(Unknowns, f64); 4] = [
     ([6.905, 0.3796, 0.1436, 0.26, 0.0, 0.004], 16.0),
     ([6.905, 0.420, 0.122, 0.26, 0.0, -0.002], 14.0),
