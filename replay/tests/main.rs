@@ -8,6 +8,7 @@ mod measured_recordings_are_read;
 mod memory_stays_bounded_on_long_recordings;
 mod our_recordings_come_back_to_the_bit;
 mod protobuf_recordings_are_read_by_their_own_descriptor;
+mod python;
 mod python_and_we_read_each_other;
 mod recordings;
 mod recordings_are_listed_and_never_overwritten;

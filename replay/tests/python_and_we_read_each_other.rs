@@ -1,14 +1,13 @@
 //! The reference packages in Python and we find the same numbers in each other's recordings.
 
-use std::env;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 
 use devices::Quantity::{Force, Moment, Roll, Speed};
 use devices::Sample;
 use replay::{ChannelColumn, Columns, Provenance, Recorder, TimeColumn};
 
+use crate::python::python;
 use crate::recordings::{channel, folder, play_whole, write};
 
 /// Checks the file named first against the lines `topic time_s value` in the file named second.
@@ -73,33 +72,6 @@ with open(sys.argv[1], "wb") as output:
         writer.add_message(channel, index, message.SerializeToString(), index)
     writer.finish()
 "#;
-
-/// The interpreter of a virtual environment that has `mcap`; none without Python or network.
-fn python() -> Option<PathBuf> {
-    let home = Path::new(env!("CARGO_TARGET_TMPDIR")).join("python_mcap");
-    let python = home.join("bin/python3");
-    let run = |program: &Path, arguments: &[&str]| -> Result<(), String> {
-        match Command::new(program).args(arguments).output() {
-            Ok(Output { status, .. }) if status.success() => Ok(()),
-            Ok(Output { stderr, .. }) => Err(String::from_utf8_lossy(&stderr).into_owned()),
-            Err(error) => Err(error.to_string()),
-        }
-    };
-    let import = ["-c", "import mcap.reader, zstandard, google.protobuf"];
-    let made = run(&python, &import).or_else(|_| {
-        run(Path::new("python3"), &["-m", "venv", &home.display().to_string()])?;
-        run(&python, &["-m", "pip", "install", "--quiet", "mcap", "protobuf"])?;
-        run(&python, &import)
-    });
-    match made {
-        Ok(()) => Some(python),
-        Err(error) if env::var_os("CI").is_none() => {
-            eprintln!("skipped: no Python with mcap and protobuf here: {error}");
-            None
-        }
-        Err(error) => panic!("no Python with mcap and protobuf: {error}"),
-    }
-}
 
 #[test]
 fn protobuf_written_by_the_reference_implementation_is_read() {
