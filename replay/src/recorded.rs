@@ -68,8 +68,8 @@ impl Recorded {
     /// The next record; none at the end of the file or its tear.
     ///
     /// # Errors
-    /// [`ReplayError::Read`], [`ReplayError::Damaged`], [`ReplayError::Field`] when a message is not
-    /// what its topic promises.
+    /// [`ReplayError::Read`], [`ReplayError::Damaged`], [`ReplayError::Field`] when a message is
+    /// not what its topic promises.
     pub fn next_record(&mut self) -> Result<Option<Record>, ReplayError> {
         while let Some(opcode) = self.records.next()? {
             match parse_record(opcode, self.records.body()) {

@@ -53,9 +53,9 @@ pub(crate) fn convert(
     };
     let metadata = Metadata { name: METADATA.to_owned(), metadata: entries(survey, stop) };
     copier.writer.write_metadata(&metadata).map_err(mcap_failed)?;
-    let mut open_runs: Vec<OpenRun> = survey.open_runs.iter().map(OpenRun::new).collect();
     let zero_ns = survey.zero_log_time_ns();
-    let time_s = |log_time: u64| (i128::from(log_time) - i128::from(zero_ns)) as f64 / 1e9;
+    let open_runs = survey.open_runs.iter().map(|start| OpenRun::new(start, zero_ns));
+    let mut open_runs: Vec<OpenRun> = open_runs.collect();
     let mut reader = PartReader::new(part, file)?;
     while let Some((opcode, body)) = reader.next()? {
         match parse_record(opcode, body) {
@@ -68,9 +68,8 @@ pub(crate) fn convert(
             Ok(McapRecord::Message { header, data }) => {
                 copier.message(&header, &data).map_err(mcap_failed)?;
                 if let Some(copied) = copier.channels.get(&header.channel_id) {
-                    let (topic, time_s) = (&copied.channel.topic, time_s(header.log_time));
                     for run in &mut open_runs {
-                        run.count(topic, time_s, &data);
+                        run.count(&copied.channel.topic, header.log_time, &data);
                     }
                 }
             }
@@ -78,7 +77,8 @@ pub(crate) fn convert(
             Err(error) => return Err(reader.damaged(error)),
         }
     }
-    let end_s = time_s(survey.last_log_time_ns);
+    let end_ns = i128::from(survey.last_log_time_ns) - i128::from(zero_ns);
+    let end_s = end_ns as f64 / 1e9;
     for run in open_runs {
         let stop = Record::RunStop(run.stop(end_s, &stop.exit));
         copier.stop_run(&stop, survey.last_log_time_ns).map_err(mcap_failed)?;

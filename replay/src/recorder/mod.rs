@@ -192,8 +192,8 @@ impl Recorder {
     /// Does what is due; `now` counts from any fixed instant and never goes back.
     ///
     /// # Errors
-    /// [`ReplayError::NearlyFull`], [`ReplayError::DiskFull`], [`ReplayError::Write`]: recording has
-    /// stopped, as [`Recorder::push`] tells.
+    /// [`ReplayError::NearlyFull`], [`ReplayError::DiskFull`], [`ReplayError::Write`]: recording
+    /// has stopped, as [`Recorder::push`] tells.
     pub fn tick(&mut self, now: Duration) -> Result<(), ReplayError> {
         let due =
             |since: Duration, period_s: f64| now.saturating_sub(since).as_secs_f64() >= period_s;

@@ -12,17 +12,22 @@ use crate::topics::TOPICS;
 /// A run that nobody ended.
 pub(crate) struct OpenRun {
     start: RunStart,
+    /// As samples carry their times, rounded to whole nanoseconds.
+    start_log_time_ns: i128,
     counts: BTreeMap<String, ChannelCounts>,
 }
 
 impl OpenRun {
-    pub(crate) fn new(start: &RunStart) -> Self {
-        Self { start: start.clone(), counts: BTreeMap::new() }
+    /// A run of a recording whose time base reads zero at a log time.
+    pub(crate) fn new(start: &RunStart, zero_log_time_ns: u64) -> Self {
+        let from_zero_ns = (start.start_s * 1e9).round() as i128;
+        let start_log_time_ns = from_zero_ns + i128::from(zero_log_time_ns);
+        Self { start: start.clone(), start_log_time_ns, counts: BTreeMap::new() }
     }
 
     /// Counts a message of the recording, when it belongs to the run.
-    pub(crate) fn count(&mut self, topic: &str, time_s: f64, message: &[u8]) {
-        if time_s < self.start.start_s {
+    pub(crate) fn count(&mut self, topic: &str, log_time_ns: u64, message: &[u8]) {
+        if i128::from(log_time_ns) < self.start_log_time_ns {
             return;
         }
         if let Some(sampled) = TOPICS.iter().find(|sampled| sampled.name == topic) {

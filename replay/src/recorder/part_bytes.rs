@@ -18,6 +18,8 @@ pub(crate) const PREFIX_BYTES: usize = 9;
 /// What a group's record begins with: its opcode, which MCAP leaves to private use, its length, and
 /// a word that is found in no text.
 pub(crate) const GROUP_START: [u8; PREFIX_BYTES + 8] = *b"\x80\x14\0\0\0\0\0\0\0\x89RTGRP\r\n";
+/// What a group's record begins with, alone.
+pub(crate) const GROUP_OPCODE: u8 = GROUP_START[0];
 /// Length of a group's record: number, length and checksum follow its start [bytes].
 pub(crate) const GROUP_HEADER_BYTES: usize = GROUP_START.len() + 12;
 

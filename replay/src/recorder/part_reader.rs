@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use mcap::{MAGIC, McapError};
 
 use super::part_bytes::{
-    GROUP_HEADER_BYTES, GROUP_START, PREFIX_BYTES, checksum, group_header, preamble,
+    GROUP_HEADER_BYTES, GROUP_OPCODE, GROUP_START, PREFIX_BYTES, checksum, group_header, preamble,
 };
 use crate::error::ReplayError;
 
@@ -50,18 +50,15 @@ impl<'a> PartReader<'a> {
             path: path.to_owned(),
             file,
             length,
-            offset: preamble().len() as u64,
+            offset: 0,
             group: Vec::new(),
             at: 0,
             spoilt: Spoilt::default(),
         };
-        // Whoever was killed before the first group left at most the preamble, which says nothing.
-        let start = reader.bytes(0, length.min(MAGIC.len() as u64) as usize)?;
-        if !MAGIC.starts_with(&start) && length > 0 {
-            return Err(ReplayError::NotMcap { path: path.to_owned() });
+        match reader.find_group(MAGIC.len() as u64)? {
+            Some(first) => reader.offset = first,
+            None => reader.offset = reader.end_of_header()?,
         }
-        let first = reader.first_group()?;
-        reader.offset = first.unwrap_or(reader.offset).min(length);
         Ok(reader)
     }
 
@@ -96,20 +93,25 @@ impl<'a> PartReader<'a> {
         ReplayError::Damaged { path: self.path.clone(), offset, source: source.into() }
     }
 
-    /// Where the first group begins: at once behind the header, or wherever one is found.
+    /// Where the first group would begin in a file that has none.
     ///
     /// # Errors
-    /// [`ReplayError::NotPart`] when there are records, but no group of them.
-    fn first_group(&self) -> Result<Option<u64>, ReplayError> {
-        let found = self.find_group(MAGIC.len() as u64)?;
-        if found.is_none() && self.length > (preamble().len() + GROUP_HEADER_BYTES) as u64 {
-            let probable = self.bytes(preamble().len() as u64, 1)?;
-            // A tail of zeros is what a power cut leaves of a file that had just been made.
-            if probable != [GROUP_START[0]] && probable != [0] {
-                return Err(ReplayError::NotPart { path: self.path.clone() });
-            }
+    /// [`ReplayError::NotMcap`] and [`ReplayError::NotPart`] when no recorder of ours can have left
+    /// the file so: what is taken for an empty part is removed, so this must be certain.
+    fn end_of_header(&self) -> Result<u64, ReplayError> {
+        let path = || self.path.clone();
+        let ours = preamble();
+        let start = self.bytes(0, ours.len())?;
+        if ours.starts_with(&start) && start.len() < ours.len() {
+            return Ok(self.length);
         }
-        Ok(found)
+        if !start.starts_with(MAGIC) {
+            return Err(ReplayError::NotMcap { path: path() });
+        }
+        // A power cut may leave zeros where the first group was to be; anything else is foreign.
+        let next = self.bytes(ours.len() as u64, 1)?;
+        let is_ours = start == ours && matches!(next[..], [] | [0 | GROUP_OPCODE]);
+        if is_ours { Ok(ours.len() as u64) } else { Err(ReplayError::NotPart { path: path() }) }
     }
 
     /// Reads the next group whose checksum is right.

@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io;
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
 
 /// A thread that calls `fdatasync` whenever it is asked.
@@ -10,9 +10,10 @@ use std::thread::{self, JoinHandle};
 /// A disk may take half a second over it; the writer would meanwhile hold samples that only a queue
 /// in memory keeps.
 pub(crate) struct Syncer {
-    requests: SyncSender<()>,
+    /// None once the thread is to end.
+    requests: Option<SyncSender<()>>,
     failures: Receiver<io::Error>,
-    thread: JoinHandle<()>,
+    thread: Option<JoinHandle<()>>,
 }
 
 impl Syncer {
@@ -33,13 +34,14 @@ impl Syncer {
             }
         };
         let thread = thread::Builder::new().name("recorder-sync".to_owned()).spawn(serve)?;
-        Ok(Self { requests, failures, thread })
+        Ok(Self { requests: Some(requests), failures, thread: Some(thread) })
     }
 
     /// Asks for all that was written so far.
     pub(crate) fn ask(&self) {
-        match self.requests.try_send(()) {
-            Ok(()) | Err(TrySendError::Full(()) | TrySendError::Disconnected(())) => {}
+        // A full queue holds a request that covers this one; a thread that ended left its failure.
+        if let Some(requests) = &self.requests {
+            let _ = requests.try_send(());
         }
     }
 
@@ -49,10 +51,21 @@ impl Syncer {
     }
 
     /// Waits until the thread has served what it was asked.
-    pub(crate) fn stop(self) -> io::Result<()> {
-        drop(self.requests);
+    pub(crate) fn stop(mut self) -> io::Result<()> {
+        self.join();
+        self.failure().map_or(Ok(()), Err)
+    }
+
+    fn join(&mut self) {
+        self.requests = None;
         // The thread runs no code that panics.
-        drop(self.thread.join());
-        self.failures.try_recv().map_or(Ok(()), Err)
+        drop(self.thread.take().map(JoinHandle::join));
+    }
+}
+
+impl Drop for Syncer {
+    /// The thread's handle of the file shares its lock, which is to end with the recorder.
+    fn drop(&mut self) {
+        self.join();
     }
 }
