@@ -9,6 +9,7 @@ mod columns;
 mod csv_file;
 mod csv_stream;
 mod documents;
+mod ending;
 mod error;
 mod folder;
 mod gaps;

@@ -10,6 +10,7 @@ mod foreign_mcap_recordings_are_read_by_topic_and_field;
 mod measured_recordings_are_read;
 mod memory_stays_bounded_on_long_recordings;
 mod orphans_are_recovered_and_listed;
+mod other_programs_read_what_the_recorder_wrote;
 mod our_recordings_come_back_to_the_bit;
 mod protobuf_recordings_are_read_by_their_own_descriptor;
 mod python;

@@ -7,7 +7,7 @@ use devices::Quantity::{Force, Moment, Roll, Speed};
 use proptest::prelude::*;
 use replay::{
     ExitStatus, Fate, Gap, LocalDisk, Loss, LossKind, Orphan, Provenance, Record, Recorded,
-    Recorder, ReplayError, recover,
+    Recorder, ReplayError, Severity, recover,
 };
 
 use crate::recorded_days::{
@@ -104,6 +104,11 @@ fn an_orphan_is_finished_with_its_open_run_and_listed_with_its_counts() {
 
     let played = play_whole(&target, &Columns::default());
     assert_eq!(played.of(Roll).len(), 2000, "and it plays like any other");
+    let note = played.note(Severity::Lost, "was recovered");
+    assert!(
+        note.ends_with("pass.mcap\" was recovered: the program that recorded it died"),
+        "{note}"
+    );
     assert_eq!(names(folder.path()), ["pass.mcap"]);
     assert!(recovered(folder.path()).is_empty(), "the next start finds nothing to do");
 }
@@ -185,6 +190,9 @@ fn what_a_disk_spoilt_is_left_out_and_all_the_rest_is_kept() {
         assert!(lost_s > 0.0 && lost_s <= 0.2, "{lost_s} s around one page: {finished:?}");
     }
     assert!(is_true(&read(&finished.path)), "and what is kept is what was recorded");
+    let played = play_whole(&finished.path, &Columns::default());
+    let spoilt = format!("{} bytes of it were spoilt by the disk", finished.spoilt_bytes);
+    played.note(Severity::Lost, &spoilt);
 }
 
 /// Whether every record is one that was recorded, or the end of a run that was.
