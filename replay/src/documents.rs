@@ -260,3 +260,41 @@ pub(crate) fn write_document(record: &Record, message: &mut Vec<u8>) -> Option<u
     written.expect("writing to memory cannot fail, and no key is anything but text");
     Some(place)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::{CampaignFile, Loss, LossKind};
+
+    #[test]
+    fn the_places_that_are_named_are_those_of_the_table() {
+        assert_eq!(DOCUMENTS[RAW].topic, RAW_PREFIX);
+        assert_eq!(DOCUMENTS[RUN_START].topic, "/run_start");
+        assert_eq!(DOCUMENTS[RUN_STOP].topic, "/run_stop");
+    }
+
+    #[test]
+    fn a_record_is_written_in_its_place_and_read_back_from_there() {
+        let (device, channel) = ("daq".to_owned(), "roll".to_owned());
+        let loss = Loss { time_s: 0.1, device, channel, kind: LossKind::OverRange, count: 3 };
+        let raw = Raw {
+            device: "daq".into(),
+            time_s: 0.1 + 0.2,
+            direction: Direction::Received,
+            bytes: vec![0, 0xff, b'"'],
+        };
+        let campaign = CampaignFile { time_s: 0.0, text: "a = \"b\"".to_owned() };
+        let mut message = Vec::new();
+        for (record, topic) in [
+            (Record::Loss(loss), "/loss"),
+            (Record::Raw(raw), "/raw/daq"),
+            (Record::Campaign(campaign), "/campaign"),
+        ] {
+            let place = write_document(&record, &mut message).expect("it is a document");
+            let document = document_of(topic).expect("the topic is known");
+            assert_eq!(document.schema_name(), DOCUMENTS[place].schema_name());
+            assert_eq!(document.decode(&message).expect("it reads back"), record);
+        }
+        assert!(document_of("/rawhide").is_none());
+    }
+}

@@ -6,7 +6,7 @@ use std::path::Path;
 use devices::Quantity::{Force, Moment, Roll, Speed};
 use proptest::prelude::*;
 use replay::{
-    ExitStatus, Fate, Gap, LocalDisk, Loss, LossKind, Orphan, Provenance, Record, Recorded,
+    Exit, ExitStatus, Fate, Gap, LocalDisk, Loss, LossKind, Orphan, Provenance, Record, Recorded,
     Recorder, ReplayError, Severity, recover,
 };
 
@@ -171,6 +171,22 @@ fn a_recorder_that_died_while_finishing_is_finished_once() {
     let Fate::Recovered(other) = &orphans[0].fate else { panic!("{orphans:?}") };
     assert_eq!(other.path, folder.path().join("pass-2.mcap"));
     assert_eq!(fs::read(folder.path().join("pass.mcap")).expect("it is there"), finished);
+}
+
+#[test]
+fn a_name_taken_while_it_was_recorded_is_not_overwritten() {
+    let folder = folder();
+    let target = folder.path().join("pass.mcap");
+    let recorder = recorder(&target, 100);
+    write(&folder, "pass.mcap", "precious");
+    let error = recorder.finish(Exit::success("the pass is over")).expect_err("it is taken");
+    assert!(matches!(error, ReplayError::Exists { .. }), "{error:?}");
+    assert_eq!(names(folder.path()), ["pass.mcap", "pass.mcap.part"]);
+    let orphans = recovered(folder.path());
+    let Fate::Recovered(finished) = &orphans[0].fate else { panic!("{orphans:?}") };
+    assert_eq!(finished.exit, Exit::success("the pass is over"), "it had come to its end");
+    assert_eq!(instants_kept(&read(&folder.path().join("pass-2.mcap"))), 100);
+    assert_eq!(fs::read(&target).expect("it is there"), b"precious");
 }
 
 #[test]

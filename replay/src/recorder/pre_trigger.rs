@@ -59,15 +59,14 @@ impl PreTrigger {
     /// Gives everything to a recorder that was just started, oldest first, and begins anew.
     ///
     /// # Errors
-    /// As [`Recorder::push`]; what was not yet given is kept.
+    /// As [`Recorder::push`]; what was not yet given stays in the ring.
     pub fn pour_into(&mut self, recorder: &mut Recorder) -> Result<(), ReplayError> {
         for record in &self.standing {
             recorder.push(record.clone())?;
         }
-        while let Some(record) = self.ring.front() {
-            recorder.push(record.clone())?;
-            self.bytes -= bytes_of(record);
-            self.ring.pop_front();
+        while let Some(record) = self.ring.pop_front() {
+            self.bytes -= bytes_of(&record);
+            recorder.push(record)?;
         }
         Ok(())
     }
