@@ -1,7 +1,7 @@
 //! What can be wrong with a recording, said with its place, its value and its limit.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use devices::Quantity;
 
@@ -284,12 +284,84 @@ pub enum ReplayError {
         /// What is asked of it.
         limit: &'static str,
     },
+    /// A record that cannot be recorded.
+    #[error("{record} cannot be recorded: {limit}")]
+    UnrecordableDocument {
+        /// The record as the program holds it.
+        record: String,
+        /// What is asked of it.
+        limit: &'static str,
+    },
+    /// No room was left in the middle of a recording.
+    #[error("\"{}\" cannot grow beyond {written_bytes} bytes: the disk is full", path.display())]
+    DiskFull {
+        /// The part file, or what it was being turned into.
+        path: PathBuf,
+        /// Bytes of it that are whole and stay.
+        written_bytes: u64,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// Little room was left, and recording stopped while it could still be finished.
+    #[error("\"{}\" stopped at {part_bytes} bytes: {free_bytes} bytes are free, to finish it and \
+        to leave {reserve_bytes} bytes to others takes {}", path.display(),
+        reserve_bytes + part_bytes)]
+    NearlyFull {
+        /// The recording.
+        path: PathBuf,
+        /// What is free [bytes].
+        free_bytes: u64,
+        /// What is left to others [bytes].
+        reserve_bytes: u64,
+        /// Bytes recorded so far, which stay.
+        part_bytes: u64,
+    },
+    /// A part file that some recorder still writes to.
+    #[error("\"{}\" is still being recorded", path.display())]
+    InUse {
+        /// The part file.
+        path: PathBuf,
+    },
+    /// A part file that no recorder of ours wrote.
+    #[error("\"{}\" is no part of a recording of ours", path.display())]
+    NotPart {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A finished file that does not read as it was written.
+    #[error("\"{}\" was written but does not read back: {fault}", path.display())]
+    NotKept {
+        /// The file.
+        path: PathBuf,
+        /// What differs.
+        fault: String,
+    },
     /// A file that is there already.
     #[error("\"{}\" exists already, recordings are never overwritten", path.display())]
     Exists {
         /// The file.
         path: PathBuf,
     },
+}
+
+impl ReplayError {
+    pub(crate) fn write(path: &Path, source: io::Error) -> Self {
+        Self::Write { path: path.to_owned(), source: source.into() }
+    }
+
+    /// The error of a file that grew to a length.
+    pub(crate) fn written(path: &Path, written_bytes: u64, source: io::Error) -> Self {
+        if is_full(&source) {
+            return Self::DiskFull { path: path.to_owned(), written_bytes, source };
+        }
+        Self::write(path, source)
+    }
+}
+
+/// Whether an error says that there is no room, for whatever reason.
+pub(crate) fn is_full(error: &io::Error) -> bool {
+    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge)
 }
 
 /// Names in quotes, the first of them when there are many.

@@ -13,7 +13,15 @@ use crate::error::ReplayError;
 /// # Errors
 /// [`ReplayError::Read`] when a folder cannot be read.
 pub fn list_recordings(folder: &Path) -> Result<Vec<PathBuf>, ReplayError> {
-    let mut recordings = Vec::new();
+    files_below(folder, &is_recording)
+}
+
+/// Every file wanted in the folder and its subfolders, by the rules of [`list_recordings`].
+pub(crate) fn files_below(
+    folder: &Path,
+    is_wanted: &dyn Fn(&Path) -> bool,
+) -> Result<Vec<PathBuf>, ReplayError> {
+    let mut files = Vec::new();
     let mut folders = vec![folder.to_owned()];
     while let Some(folder) = folders.pop() {
         let read_error = |source| ReplayError::Read { path: folder.clone(), source };
@@ -28,13 +36,13 @@ pub fn list_recordings(folder: &Path) -> Result<Vec<PathBuf>, ReplayError> {
                 if name != "results" {
                     folders.push(entry.path());
                 }
-            } else if is_recording(&entry.path()) && entry.path().is_file() {
-                recordings.push(entry.path());
+            } else if is_wanted(&entry.path()) && entry.path().is_file() {
+                files.push(entry.path());
             }
         }
     }
-    recordings.sort();
-    Ok(recordings)
+    files.sort();
+    Ok(files)
 }
 
 fn is_recording(path: &Path) -> bool {

@@ -77,6 +77,20 @@ impl ReplayError {
             Self::Exists { .. } => {
                 Some("choose another name, or remove the file if it is not needed".to_owned())
             }
+            Self::DiskFull { .. } => Some(
+                "make room; what was recorded is safe, and finished at the next start".to_owned(),
+            ),
+            Self::NearlyFull { .. } => {
+                Some("make room, or record to another disk; what was recorded is safe".to_owned())
+            }
+            Self::InUse { .. } => Some("stop the program that records it first".to_owned()),
+            Self::NotPart { .. } => Some(
+                "an earlier version, or another program, left it; `mcap recover` may read it"
+                    .to_owned(),
+            ),
+            Self::NotKept { .. } => {
+                Some("the disk fails; copy the part file to another one".to_owned())
+            }
             _ => None,
         }
     }

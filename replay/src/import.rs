@@ -8,7 +8,7 @@ use crate::columns::Columns;
 use crate::error::ReplayError;
 use crate::note::Note;
 use crate::player::Player;
-use crate::recorder::{Provenance, Recorder};
+use crate::recorder::{Exit, Provenance, Recorder};
 
 /// What an import wrote.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,7 +69,7 @@ pub fn import(
         recorder.abandon()?;
         return Err(error);
     }
-    let samples = recorder.finish()?;
+    let samples = recorder.finish(Exit::success("imported"))?.samples;
     Ok(ImportReport { samples, first_s, last_s, notes: player.notes().to_vec() })
 }
 

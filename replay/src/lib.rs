@@ -1,12 +1,15 @@
 //! How runs are kept and played back: MCAP and CSV recordings as devices.
 //!
 //! Reading, from the outside in: [`Player`] merges streams in time order; a stream is one file on
-//! one time base, a delimited table or a topic of an MCAP file. Writing: [`Recorder`], and
-//! [`import()`] from the one to the other.
+//! one time base, a delimited table or a topic of an MCAP file; [`Recorded`] gives back everything
+//! that one of our own recordings holds. Writing: [`Recorder`], which a crash takes nothing from,
+//! [`recover`] after one, and [`import()`] from any recording to one of our own.
 
 mod columns;
 mod csv_file;
 mod csv_stream;
+mod documents;
+mod ending;
 mod error;
 mod folder;
 mod gaps;
@@ -24,6 +27,8 @@ mod player;
 mod protobuf_field;
 mod protobuf_schema;
 mod protobuf_wire;
+mod record;
+mod recorded;
 mod recorder;
 mod sources;
 mod stamps;
@@ -38,4 +43,12 @@ pub use nearest::edit_distance;
 pub use note::{Note, Severity};
 pub use number::CellFault;
 pub use player::Player;
-pub use recorder::{Provenance, Recorder};
+pub use record::{
+    AttachedDevice, Calibration, CampaignFile, ChannelCounts, ClockReading, Direction, ExitStatus,
+    Gap, Loss, LossKind, Raw, Record, Rejection, RunResult, RunStart, RunStop,
+};
+pub use recorded::Recorded;
+pub use recorder::{
+    ClosedRecording, Disk, Exit, Fate, Finished, LocalDisk, Orphan, PreTrigger, Progress,
+    Provenance, Recorder, Settings, recover,
+};

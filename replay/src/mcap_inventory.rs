@@ -8,13 +8,15 @@ use mcap::records::{Record, op};
 
 use crate::error::ReplayError;
 use crate::mcap_records::Records;
-use crate::topics::PROFILE;
+use crate::topics::{METADATA, PROFILE};
 
 /// What an MCAP file holds.
 #[derive(Debug, Default)]
 pub(crate) struct Inventory {
     /// Whether the file is one of our own recordings.
     pub(crate) ours: bool,
+    /// What such a recording says about itself.
+    pub(crate) metadata: BTreeMap<String, String>,
     /// Message encoding of each topic that has messages.
     pub(crate) encodings: BTreeMap<String, String>,
     /// Log time of the earliest message [ns].
@@ -24,16 +26,16 @@ pub(crate) struct Inventory {
 impl Inventory {
     /// Reads the summary of the file, or all of it when it was torn or has no summary.
     pub(crate) fn read(path: &Path) -> Result<Self, ReplayError> {
-        let ours = is_ours(&mut Records::open(path)?)?;
+        let (ours, metadata) = introduction(&mut Records::open(path)?)?;
         let mut records = Records::open(path)?;
         // A damaged summary is no loss as long as the messages can be read.
         if records.seek_to_summary()?
             && let Ok(Some(inventory)) = Self::from_summary(&mut records)
         {
-            return Ok(Self { ours, ..inventory });
+            return Ok(Self { ours, metadata, ..inventory });
         }
         let inventory = Self::from_messages(&mut Records::open(path)?)?;
-        Ok(Self { ours, ..inventory })
+        Ok(Self { ours, metadata, ..inventory })
     }
 
     /// The topics' names.
@@ -99,14 +101,18 @@ impl Inventory {
     }
 }
 
-/// Whether the header carries our profile.
-fn is_ours(records: &mut Records) -> Result<bool, ReplayError> {
-    match records.next()? {
-        Some(op::HEADER) => match parse_record(op::HEADER, records.body()) {
-            Ok(Record::Header(header)) => Ok(header.profile == PROFILE),
-            Ok(_) => Ok(false),
-            Err(error) => Err(records.damaged(error)),
-        },
-        _ => Ok(false),
+/// Whether the header carries our profile, and the metadata behind it.
+fn introduction(records: &mut Records) -> Result<(bool, BTreeMap<String, String>), ReplayError> {
+    let mut ours = false;
+    while let Some(opcode @ (op::HEADER | op::METADATA)) = records.next()? {
+        match parse_record(opcode, records.body()) {
+            Ok(Record::Header(header)) if header.profile == PROFILE => ours = true,
+            Ok(Record::Metadata(found)) if ours && found.name == METADATA => {
+                return Ok((ours, found.metadata));
+            }
+            Ok(_) => break,
+            Err(error) => return Err(records.damaged(error)),
+        }
     }
+    Ok((ours, BTreeMap::new()))
 }

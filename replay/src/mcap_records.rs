@@ -125,7 +125,14 @@ impl Records {
                 // A computer that loses power can leave a tail of zeros behind.
                 0 => self.torn_at = Some(start),
                 _ if !self.has(length) => self.torn_at = Some(start),
-                op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE | op::STATISTICS => {
+                // Metadata of any size may be passed over.
+                op::METADATA if length > RECORD_BYTES_MAX => self.seek(self.offset + length)?,
+                op::METADATA
+                | op::HEADER
+                | op::SCHEMA
+                | op::CHANNEL
+                | op::MESSAGE
+                | op::STATISTICS => {
                     self.read_body(length)?;
                     return Ok(Some(opcode));
                 }

@@ -22,6 +22,8 @@ pub struct Player {
     name: String,
     heads: Vec<Head>,
     gaps: Vec<Gaps>,
+    /// What is known before anything is read.
+    endings: Vec<Note>,
     notes: Vec<Note>,
     zero_log_time_ns: u64,
 }
@@ -53,8 +55,14 @@ impl Player {
         }
         let gaps = sources.quantities.into_iter().map(Gaps::new).collect();
         let zero_log_time_ns = sources.zero_log_time_ns;
-        let mut player =
-            Self { name: name.to_owned(), heads, gaps, notes: Vec::new(), zero_log_time_ns };
+        let mut player = Self {
+            name: name.to_owned(),
+            heads,
+            gaps,
+            endings: sources.notes,
+            notes: Vec::new(),
+            zero_log_time_ns,
+        };
         player.renew_notes(false);
         Ok(player)
     }
@@ -103,7 +111,7 @@ impl Player {
     }
 
     fn renew_notes(&mut self, ended: bool) {
-        self.notes.clear();
+        self.notes.clone_from(&self.endings);
         for head in &self.heads {
             head.stream.notes(&mut self.notes);
         }

@@ -9,10 +9,12 @@ use mcap::MAGIC;
 use crate::columns::{ChannelColumn, Columns, TimeColumn};
 use crate::csv_file::open;
 use crate::csv_stream::{CsvStream, TimeBase};
+use crate::ending;
 use crate::error::ReplayError;
 use crate::mcap_inventory::Inventory;
 use crate::mcap_stream::{McapStream, MessageTime, Place};
 use crate::message::READABLE;
+use crate::note::Note;
 use crate::stream::Stream;
 use crate::topics::{TIME_FIELD, TOPICS};
 
@@ -21,6 +23,8 @@ pub(crate) struct Sources {
     pub(crate) streams: Vec<Box<dyn Stream>>,
     /// The channels, in the order of [`Quantity::ALL`].
     pub(crate) quantities: Vec<Quantity>,
+    /// What our own recordings say about their ends.
+    pub(crate) notes: Vec<Note>,
     /// Log time [ns] of time zero, where foreign MCAP files give one.
     pub(crate) zero_log_time_ns: u64,
 }
@@ -42,7 +46,13 @@ pub(crate) fn open_streams(
     let foreign = inventories.iter().flatten().filter(|inventory| !inventory.ours);
     let zero_log_time_ns = foreign.filter_map(|inventory| inventory.first_log_time_ns).min();
     let zero_log_time_ns = zero_log_time_ns.unwrap_or(0);
-    let mut sources = Sources { streams: Vec::new(), quantities: Vec::new(), zero_log_time_ns };
+    let endings = files
+        .iter()
+        .zip(&inventories)
+        .filter_map(|((_, path), inventory)| ending::note(path, &inventory.as_ref()?.metadata));
+    let notes = endings.collect();
+    let mut sources =
+        Sources { streams: Vec::new(), quantities: Vec::new(), notes, zero_log_time_ns };
     for ((only, path), inventory) in files.iter().zip(&inventories) {
         match inventory {
             Some(inventory) if inventory.encodings.is_empty() => {

@@ -3,7 +3,7 @@
 use devices::Quantity::{Roll, Speed};
 use mcap::WriteOptions;
 use proptest::prelude::*;
-use replay::Columns;
+use replay::{Columns, Fate, LocalDisk, Orphan, recover};
 
 use crate::foreign_mcap_recordings_are_read_by_topic_and_field::mcap_file;
 use crate::recordings::{channel, columns, folder, play, write};
@@ -54,6 +54,20 @@ proptest! {
     #[test]
     fn any_bytes_as_mcap(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         play_bytes("story.mcap", &[mcap::MAGIC, &bytes].concat());
+    }
+
+    #[test]
+    fn any_bytes_as_an_orphan_are_left_as_they_are(
+        bytes in prop::collection::vec(any::<u8>(), 9..400),
+    ) {
+        for bytes in [bytes.clone(), [mcap::MAGIC, &bytes].concat()] {
+            let folder = folder();
+            let path = write(&folder, "story.mcap.part", &bytes);
+            let orphans = recover(folder.path(), &mut LocalDisk).expect("the folder can be read");
+            let left = matches!(&orphans[..], [Orphan { fate: Fate::Left(_), .. }]);
+            prop_assert!(left, "{:?}", orphans);
+            prop_assert_eq!(std::fs::read(path).expect("it is there"), bytes);
+        }
     }
 
     #[test]

@@ -1,15 +1,21 @@
 //! Stories of recordings: what a tank's files look like, and what comes out of them.
 
+mod a_full_disk_stops_the_recording_and_nothing_else;
+mod a_killed_recorder_loses_at_most_a_fifth_of_a_second;
 mod any_bytes_never_panic;
 mod bad_tables_are_told_with_their_place;
 mod channels_with_their_own_time_bases_are_merged;
+mod everything_recorded_comes_back;
 mod foreign_mcap_recordings_are_read_by_topic_and_field;
 mod measured_recordings_are_read;
 mod memory_stays_bounded_on_long_recordings;
+mod orphans_are_recovered_and_listed;
+mod other_programs_read_what_the_recorder_wrote;
 mod our_recordings_come_back_to_the_bit;
 mod protobuf_recordings_are_read_by_their_own_descriptor;
 mod python;
 mod python_and_we_read_each_other;
+mod recorded_days;
 mod recordings;
 mod recordings_are_listed_and_never_overwritten;
 mod tables_of_any_style_are_read;

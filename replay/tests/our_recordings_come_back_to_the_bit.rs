@@ -5,7 +5,7 @@ use std::fs;
 use devices::Quantity::{Force, Moment, Roll, Speed};
 use devices::{Quantity, Sample};
 use proptest::prelude::*;
-use replay::{Columns, Provenance, Recorder, Severity, import};
+use replay::{Columns, Exit, Provenance, Recorder, Severity, import};
 
 use crate::recordings::{columns, folder, play_files, play_whole, table, time, write};
 
@@ -101,16 +101,17 @@ fn what_cannot_be_recorded_is_refused_with_its_value() {
     let target = folder.path().join("pass.mcap");
     let mut recorder = Recorder::create(&target, &Provenance::default()).expect("it starts");
     let refused = |recorder: &mut Recorder, time_s, value| {
-        recorder.push(&sample(Roll, time_s, value)).expect_err("it is refused").to_string()
+        recorder.push(sample(Roll, time_s, value)).expect_err("it is refused").to_string()
     };
     let message = refused(&mut recorder, 1.0, f64::NAN);
     assert_eq!(message, "roll NaN at 1 s cannot be recorded: value and time must be finite");
     assert!(refused(&mut recorder, f64::INFINITY, 0.0).contains("must be finite"));
     assert!(refused(&mut recorder, -1.0, 0.0).contains("log time must be 0 to 18.4e9 s"));
     assert!(refused(&mut recorder, 1e11, 0.0).contains("log time must be 0 to 18.4e9 s"));
-    recorder.push(&sample(Roll, 2.0, 0.5)).expect("a good sample");
+    recorder.push(sample(Roll, 2.0, 0.5)).expect("a good sample");
     assert!(refused(&mut recorder, 1.0, 0.5).contains("channel roll: time runs backwards, 1 s"));
-    assert_eq!(recorder.finish().expect("it is completed"), [(Roll, 1)]);
+    let finished = recorder.finish(Exit::success("story")).expect("it is completed");
+    assert_eq!(finished.samples, [(Roll, 1)]);
 }
 
 proptest! {
@@ -134,7 +135,7 @@ proptest! {
         for sample in &samples {
             recorder.push(sample).expect("it is recorded");
         }
-        recorder.finish().expect("it is completed");
+        recorder.finish(Exit::success("story")).expect("it is completed");
         let played = play_whole(&target, &Columns::default());
         let bits = |samples: &[Sample]| -> Vec<_> {
             let numbers = samples.iter().map(|sample| (sample.time_s, sample.value));

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use devices::Quantity::{Force, Moment, Roll, Speed};
 use devices::Sample;
-use replay::{ChannelColumn, Columns, Provenance, Recorder, TimeColumn};
+use replay::{ChannelColumn, Columns, Exit, Provenance, Recorder, TimeColumn};
 
 use crate::python::python;
 use crate::recordings::{channel, folder, play_whole, write};
@@ -113,10 +113,10 @@ fn schema_times_and_values_of_our_recordings_are_equal_in_python() {
         let topics = [(Roll, "/roll"), (Force, "/force"), (Moment, "/moment"), (Speed, "/speed")];
         let (quantity, topic) = topics[index as usize % 4];
         let value = (time_s * 7.0).sin() * 10_f64.powi(index % 40 - 20);
-        recorder.push(&Sample { quantity, time_s, value }).expect("it is recorded");
+        recorder.push(Sample { quantity, time_s, value }).expect("it is recorded");
         expected.push(format!("{topic} {time_s:?} {value:?}"));
     }
-    recorder.finish().expect("it is completed");
+    recorder.finish(Exit::success("story")).expect("it is completed");
     let (script, lines) = (folder.path().join("check.py"), folder.path().join("expected.txt"));
     fs::write(&script, CHECK).expect("it is written");
     fs::write(&lines, expected.join("\n")).expect("it is written");

@@ -4,7 +4,7 @@ use devices::Quantity::Roll;
 use devices::Sample;
 use mcap::WriteOptions;
 use replay::Severity::Lost;
-use replay::{Columns, Provenance, Recorder};
+use replay::{Columns, Exit, Provenance, Recorder};
 
 use crate::foreign_mcap_recordings_are_read_by_topic_and_field::mcap_file;
 use crate::recordings::{Played, channel, folder, play, play_whole, refusal, write};
@@ -17,9 +17,9 @@ fn recorded() -> Vec<u8> {
     for index in 0..20_000 {
         let time_s = f64::from(index) / 100.0;
         let value = (2.4 * time_s).sin();
-        recorder.push(&Sample { quantity: Roll, time_s, value }).expect("it is recorded");
+        recorder.push(Sample { quantity: Roll, time_s, value }).expect("it is recorded");
     }
-    recorder.finish().expect("it is completed");
+    recorder.finish(Exit::success("story")).expect("it is completed");
     std::fs::read(target).expect("it is there")
 }
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use devices::Quantity;
-use replay::{Provenance, Recorder, ReplayError};
+use replay::{Exit, Provenance, Recorder, ReplayError};
 
 use super::instruments::FileFormat;
 use super::scenario::{ArmShape, Scenario};
@@ -164,7 +164,7 @@ fn record(
     for sample in &simulated.samples {
         recorder.push(sample)?;
     }
-    recorder.finish().map(|_| ())
+    recorder.finish(Exit::success("simulated")).map(|_| ())
 }
 
 /// Everything of `campaign.toml` before its recordings.
