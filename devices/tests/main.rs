@@ -1,0 +1,1 @@
+//! Stories of instruments: what their lines carry, and what comes of it.
