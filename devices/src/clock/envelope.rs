@@ -17,7 +17,7 @@ const WINDOWS_FOR_BOUND: usize = 4;
 /// No crystal or ceramic resonator is further off [s/s]; it keeps short spans sane.
 const RATE_OFF_MAX: f64 = 0.005;
 /// Bound per mean of the windows' smallest residuals, from the simulated links of the tests.
-const BOUND_PER_SPREAD: f64 = 1.0;
+const BOUND_PER_SPREAD: f64 = 1.5;
 /// Reading the host's clock and rounding device ticks costs at least this much [s].
 const BOUND_FLOOR_S: f64 = 20e-6;
 

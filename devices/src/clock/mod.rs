@@ -2,12 +2,14 @@
 
 mod counter;
 mod envelope;
+mod paced;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 pub use counter::{Counter, CounterStep};
 pub use envelope::{ClockLine, Envelope};
+pub use paced::Paced;
 
 /// Nanoseconds in a second.
 pub(crate) const NS_PER_S: f64 = 1e9;

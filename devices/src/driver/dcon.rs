@@ -214,6 +214,12 @@ impl Protocol for Dcon {
         requests
     }
 
+    fn fields_asked(&self, request: &Request) -> Vec<usize> {
+        let first = self.first_field(request.tag);
+        let n_channels = self.settings.modules.get(request.tag).map_or(0, |module| module.channels);
+        (first..first + n_channels).collect()
+    }
+
     fn decode(&mut self, bytes: &[u8], asked: Option<&Request>) -> Found {
         let Some((line, n_bytes)) = first_line(bytes, |byte| byte == b'\r') else {
             if bytes.len() > REPLY_BYTES_MAX {

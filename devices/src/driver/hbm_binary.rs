@@ -188,9 +188,8 @@ impl Protocol for HbmBinary {
             return Found::Part;
         };
         match hbm_line::answer(line, asked.purpose) {
-            Some(content @ Content::Identity(_)) if line.iter().any(u8::is_ascii_control) => {
-                // What was still streaming when `STP;` came is no identity.
-                drop(content);
+            // What was still streaming when `STP;` came is no identity.
+            Some(Content::Identity(_)) if line.iter().any(u8::is_ascii_control) => {
                 Found::Skip { n_bytes }
             }
             Some(content) => Found::Frame { n_bytes, content },

@@ -21,6 +21,8 @@ use serde::de::DeserializeOwned;
 
 pub use session::{Decoded, Pace, Session, Taken};
 
+pub(crate) use session::shown;
+
 pub(crate) use cobs_stream::{Frame as CobsFrame, decode_frame, encode_frame, encode_identity};
 pub(crate) use dcon::{Settings as DconSettings, checksum as dcon_checksum};
 pub(crate) use hbm_binary::Format as HbmFormat;
@@ -119,6 +121,11 @@ pub trait Protocol: Send {
 
     /// Requests of one cycle; empty when the instrument talks unasked.
     fn cycle(&self) -> Vec<Request>;
+
+    /// Fields that the answer to a request to read brings.
+    fn fields_asked(&self, request: &Request) -> Vec<usize> {
+        vec![request.tag]
+    }
 
     /// What stands at the start of `bytes`, which came after `asked`.
     fn decode(&mut self, bytes: &[u8], asked: Option<&Request>) -> Found;

@@ -206,6 +206,12 @@ impl Protocol for Modbus {
         self.blocks.iter().enumerate().map(request).collect()
     }
 
+    fn fields_asked(&self, request: &Request) -> Vec<usize> {
+        let block = self.blocks.get(request.tag);
+        let fields = block.into_iter().flat_map(|block| &block.fields);
+        fields.map(|(field, _)| *field).collect()
+    }
+
     fn decode(&mut self, bytes: &[u8], asked: Option<&Request>) -> Found {
         let noise = |damage| Found::Noise { n_bytes: 1, damage };
         let block = &self.blocks[asked.map_or(0, |asked| asked.tag).min(self.blocks.len() - 1)];

@@ -49,8 +49,8 @@ pub enum Decoded {
     Silent {
         /// The request.
         request: String,
-        /// Of what tag.
-        tag: usize,
+        /// Fields that it was to bring.
+        fields: Vec<usize>,
         /// How long was waited [ns].
         waited_ns: u64,
     },
@@ -78,10 +78,12 @@ pub enum Decoded {
 /// What the host knows of the instant of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Taken {
-    /// It came unasked and its last byte arrived then [ns].
+    /// It came unasked: its last byte arrived then, less its time on the wire [ns].
     Arrived(u64),
-    /// It was taken between [ns].
+    /// It was fetched: the request was sent, and the answer began, at these times [ns].
     Between(u64, u64),
+    /// The bus was told to measure between these times [ns].
+    Held(u64, u64),
 }
 
 struct Waiting {
@@ -250,14 +252,15 @@ impl Session {
         }
         match (content, answered) {
             (Content::Values { values, sequence, ticks }, Some(answered)) => {
-                let latest_ns = at_ns.saturating_sub(self.wire_ns(n_bytes));
-                let latest_ns = latest_ns.max(answered.sent_ns);
-                let (from, to) = self.held.unwrap_or((answered.sent_ns, latest_ns));
-                let taken = Taken::Between(from, to);
+                let began_ns = at_ns.saturating_sub(self.wire_ns(n_bytes)).max(answered.sent_ns);
+                let taken = match self.held {
+                    Some((from_ns, to_ns)) => Taken::Held(from_ns, to_ns),
+                    None => Taken::Between(answered.sent_ns, began_ns),
+                };
                 decoded.push(Decoded::Values { values, sequence, ticks, taken });
             }
             (Content::Values { values, sequence, ticks }, None) if streams => {
-                let taken = Taken::Arrived(at_ns);
+                let taken = Taken::Arrived(at_ns.saturating_sub(self.wire_ns(n_bytes)));
                 decoded.push(Decoded::Values { values, sequence, ticks, taken });
             }
             (Content::Identity(text), _) => decoded.push(Decoded::Identity(text)),
@@ -278,7 +281,10 @@ impl Session {
         self.drop_rest(decoded);
         decoded.push(Decoded::Silent {
             request: shown(&waiting.request.bytes),
-            tag: waiting.request.tag,
+            fields: match waiting.request.purpose {
+                Purpose::Read => self.protocol.fields_asked(&waiting.request),
+                _ => Vec::new(),
+            },
             waited_ns: waiting.deadline_ns - waiting.sent_ns,
         });
         self.ready_ns = waiting.deadline_ns + self.pace.timeout_ns;

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use super::pattern::{Mismatch, Pattern, PatternValues};
 use super::{
     Content, Damage, DeviceTicks, Found, Protocol, Purpose, Request, SettingsError, ask,
-    first_line, plain, settings, tell, value,
+    first_line, settings, tell, value,
 };
 use crate::Quality;
 
@@ -76,6 +76,10 @@ impl Protocol for TextLine {
         request.map(|text| ask(text.clone().into_bytes(), Purpose::Read, 0)).into_iter().collect()
     }
 
+    fn fields_asked(&self, _request: &Request) -> Vec<usize> {
+        (0..self.pattern.n_fields()).collect()
+    }
+
     fn decode(&mut self, bytes: &[u8], _asked: Option<&Request>) -> Found {
         let is_end = |byte: u8| self.settings.terminators.as_bytes().contains(&byte);
         let Some((line, n_bytes)) = first_line(bytes, is_end) else {
@@ -106,8 +110,7 @@ impl Protocol for TextLine {
 
 fn content(line: PatternValues) -> Content {
     let values = line.fields.iter().map(|(field, raw)| value(*field, *raw, Quality::GOOD));
-    let Content::Values { values, .. } = plain(values.collect()) else { unreachable!() };
-    Content::Values { values, sequence: line.sequence, ticks: line.ticks }
+    Content::Values { values: values.collect(), sequence: line.sequence, ticks: line.ticks }
 }
 
 #[cfg(test)]
