@@ -37,16 +37,14 @@ impl Instrument {
         let latency_s = adapter_latency_s(&config.port).unwrap_or(0.0).max(PLAIN_LATENCY_S);
         let interpreter = Interpreter::new(config, latency_s)?;
         let session = Session::new(config.protocol()?, config.pace.pace(&config.line));
-        let options =
-            LinkOptions { path: config.port.clone(), line: config.line, realtime: true };
-        let reader = LinkReader::start(options, session, clock).map_err(|error| {
-            InstrumentError::Port {
+        let options = LinkOptions { path: config.port.clone(), line: config.line, realtime: true };
+        let reader =
+            LinkReader::start(options, session, clock).map_err(|error| InstrumentError::Port {
                 device: config.name.clone(),
                 port: config.port.clone(),
                 fault: crate::port::PortFault::Other(error.to_string()),
                 present: Vec::new(),
-            }
-        })?;
+            })?;
         let name = config.name.clone();
         Ok(Self { name, reader, interpreter, waiting: VecDeque::new() })
     }

@@ -207,7 +207,10 @@ impl Interpreter {
                     out.push(InstrumentEvent::Identity(text.clone()));
                 }
                 Decoded::Silent { fields, .. } => {
-                    self.count(|channel| fields.contains(&channel.field), |counts| counts.lost += 1);
+                    self.count(
+                        |channel| fields.contains(&channel.field),
+                        |counts| counts.lost += 1,
+                    );
                 }
                 Decoded::Missed { n_cycles } => {
                     self.count(|_| true, |counts| counts.lost += n_cycles);

@@ -11,6 +11,7 @@ pub mod channel;
 pub mod clock;
 mod device;
 pub mod driver;
+pub mod emulator;
 mod error;
 mod hint;
 mod instrument;

@@ -192,8 +192,7 @@ mod tests {
 
     #[test]
     fn a_restarted_board_begins_a_new_line() {
-        let ticks =
-            DeviceTicks { sequence_bits: Some(32), time_bits: Some(32), ticks_per_s: 1e6 };
+        let ticks = DeviceTicks { sequence_bits: Some(32), time_bits: Some(32), ticks_per_s: 1e6 };
         let mut stamper = stamper(ticks);
         for index in 0..500_u64 {
             let arrived = Taken::Arrived(5_000_000_000 + index * 10_000_000);

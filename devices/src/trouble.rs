@@ -95,7 +95,8 @@ impl Troubles {
 
     /// A wrong answer to the question who it is.
     pub(crate) fn identity(&mut self, seen: &str) -> Option<InstrumentError> {
-        let expected = self.identity.clone().filter(|expected| !seen.contains(expected.as_str()))?;
+        let expected =
+            self.identity.clone().filter(|expected| !seen.contains(expected.as_str()))?;
         let (device, port) = (self.device.clone(), self.port.clone());
         self.once(InstrumentError::WrongDevice { device, port, expected, seen: seen.to_owned() })
     }
@@ -116,7 +117,11 @@ impl Troubles {
         }
         if 2 * UNASKED_ANSWERS <= self.unasked.0 {
             self.unasked.0 = 0;
-            return self.once(InstrumentError::Unasked { device, port, seen: self.unasked.1.clone() });
+            return self.once(InstrumentError::Unasked {
+                device,
+                port,
+                seen: self.unasked.1.clone(),
+            });
         }
         let garbage = self.n_frames == 0
             && self.n_bytes >= GARBAGE_BYTES

@@ -150,8 +150,7 @@ pub fn gain_from_loads(pairs: &[[f64; 2]]) -> Result<(f64, f64, f64), Calibratio
         return Err(CalibrationError::OneLoad(mean_load));
     }
     // Loads are known, readings scatter: raw on load, then turned round.
-    let together: f64 =
-        pairs.iter().map(|[raw, load]| (raw - mean_raw) * (load - mean_load)).sum();
+    let together: f64 = pairs.iter().map(|[raw, load]| (raw - mean_raw) * (load - mean_load)).sum();
     let gain = spread / together;
     if !gain.is_finite() {
         return Err(CalibrationError::Number(gain));

@@ -34,7 +34,7 @@ struct Settings {
 
 /// What one frame says.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Frame {
+enum Frame {
     Samples { sequence: u32, time_us: u64, values: Vec<i32> },
     Identity(String),
 }
@@ -78,12 +78,17 @@ pub(crate) fn encode_identity(text: &str) -> Vec<u8> {
 }
 
 /// The host's question who it is; an instrument may also say so unasked when it starts.
-pub(crate) fn who() -> Vec<u8> {
+fn who() -> Vec<u8> {
     frame(vec![VERSION, WHO])
 }
 
+/// Whether these bytes, without their zero, are the host's question.
+pub(crate) fn is_who(bytes: &[u8]) -> bool {
+    who().strip_suffix(&[0]) == Some(bytes)
+}
+
 /// The frame in these bytes, without their zero.
-pub(crate) fn decode_frame(bytes: &[u8]) -> Result<Frame, Damage> {
+fn decode_frame(bytes: &[u8]) -> Result<Frame, Damage> {
     let payload = cobs::decode_vec(bytes).map_err(|_| Damage::Form)?;
     let (body, sum) = payload.split_last_chunk::<2>().ok_or(Damage::Form)?;
     if CRC.checksum(body) != u16::from_le_bytes(*sum) {
@@ -136,9 +141,7 @@ impl Protocol for CobsStream {
             return Found::Skip { n_bytes };
         }
         match decode_frame(encoded) {
-            Ok(Frame::Identity(text)) => {
-                Found::Frame { n_bytes, content: Content::Identity(text) }
-            }
+            Ok(Frame::Identity(text)) => Found::Frame { n_bytes, content: Content::Identity(text) },
             Ok(Frame::Samples { sequence, time_us, values })
                 if values.len() == self.settings.fields =>
             {

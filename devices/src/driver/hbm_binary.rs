@@ -8,8 +8,7 @@ use serde::Deserialize;
 
 use super::hbm_line::{self, SetUp, is_overflow, signed_24};
 use super::{
-    Content, Damage, Found, Protocol, Purpose, Request, SettingsError, plain, settings, tell,
-    value,
+    Content, Damage, Found, Protocol, Purpose, Request, SettingsError, plain, settings, tell, value,
 };
 use crate::Quality;
 

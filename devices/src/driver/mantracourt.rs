@@ -200,9 +200,8 @@ mod tests {
         let mut cell = cell("stations = [1, 2]\nsnapshot = true\nstatus = true");
         let cycle = cell.cycle();
         let sent: Vec<&[u8]> = cycle.iter().map(|request| &request.bytes[..]).collect();
-        let expected: [&[u8]; 5] = [
-            b"!000:SNAP\r", b"!001:STAT?\r", b"!001:SYSN?\r", b"!002:STAT?\r", b"!002:SYSN?\r",
-        ];
+        let expected: [&[u8]; 5] =
+            [b"!000:SNAP\r", b"!001:STAT?\r", b"!001:SYSN?\r", b"!002:STAT?\r", b"!002:SYSN?\r"];
         assert_eq!(sent, expected);
         cell.decode(b"+08192.\r", Some(&cycle[3]));
         let Found::Frame { content: Content::Values { values, .. }, .. } =

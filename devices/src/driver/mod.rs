@@ -23,14 +23,14 @@ pub use session::{Decoded, Pace, Session, Taken};
 
 pub(crate) use session::shown;
 
-pub(crate) use cobs_stream::{Frame as CobsFrame, decode_frame, encode_frame, encode_identity};
+pub(crate) use cobs_stream::{encode_frame, encode_identity, is_who};
 pub(crate) use dcon::{Settings as DconSettings, checksum as dcon_checksum};
+pub(crate) use hbm_ascii::Settings as HbmAsciiSettings;
 pub(crate) use hbm_binary::Format as HbmFormat;
 pub(crate) use hbm_binary::Settings as HbmBinarySettings;
-pub(crate) use hbm_ascii::Settings as HbmAsciiSettings;
-pub(crate) use mantrabus::{Settings as MantrabusSettings, checksum, from_nibbles, to_nibbles};
+pub(crate) use mantrabus::{Settings as MantrabusSettings, checksum, to_nibbles};
 pub(crate) use mantracourt::Settings as MantracourtSettings;
-pub(crate) use modbus::{NumberType, Settings as ModbusSettings, WordOrder, crc as modbus_crc};
+pub(crate) use modbus::{NumberType, Settings as ModbusSettings, crc as modbus_crc};
 pub(crate) use pattern::{Pattern, PatternValues};
 pub(crate) use text_line::Settings as TextLineSettings;
 

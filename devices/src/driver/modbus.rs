@@ -183,7 +183,8 @@ impl Modbus {
 
 impl Protocol for Modbus {
     fn fields(&self) -> Vec<String> {
-        let name = |field: &Field| format!("{}:{}:{}", field.station, field.function, field.address);
+        let name =
+            |field: &Field| format!("{}:{}:{}", field.station, field.function, field.address);
         self.settings.fields.iter().map(name).collect()
     }
 

@@ -156,7 +156,8 @@ mod tests {
 
     #[test]
     fn a_decimal_comma_and_frames_of_stx_and_etx_are_read() {
-        let text = "pattern = \"\\u0002 {0} ;{1}\"\ndecimal_comma = true\nterminators = \"\\u0003\"";
+        let text =
+            "pattern = \"\\u0002 {0} ;{1}\"\ndecimal_comma = true\nterminators = \"\\u0003\"";
         let mut probe = line(text);
         assert_eq!(read(probe.as_mut(), b"\x02  -1,25 ;3\x03").0, [-1.25, 3.0]);
     }

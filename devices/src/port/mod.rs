@@ -158,7 +158,9 @@ impl Port {
             Ok(0) => Arrival::Lost("end of file".to_owned()),
             Ok(n_bytes) => Arrival::Bytes(n_bytes),
             Err(error) => match error.kind() {
-                ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted => Arrival::Idle,
+                ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted => {
+                    Arrival::Idle
+                }
                 _ => Arrival::Lost(error.to_string()),
             },
         }

@@ -8,7 +8,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use super::{Line, Port, PortFault, Arrival};
+use super::{Arrival, Line, Port, PortFault};
 use crate::clock::Clock;
 use crate::driver::{Decoded, Session};
 
