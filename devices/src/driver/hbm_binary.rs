@@ -1,8 +1,9 @@
 //! HBM/HBK AED, FIT, AD103C and AD104 digitisers, measured values in binary.
 //!
-//! AD104 operating manual: output formats COF0, 2, 4, 6, 8 and 12, plus 32 without CR LF. CR and LF
-//! occur inside values too, so frames are counted, not split. Before a value is believed after
-//! noise, the frames that follow it must stand where they should.
+//! AD104 operating manual: output formats COF0, 2, 4, 6, 8 and 12. CR and LF occur inside values
+//! too, so frames are counted, not split. Before a value is believed after noise, the frame that
+//! follows it must stand where it should. The formats without CR LF (plus 32) are refused: their XOR
+//! check is the same in every rotation, so after one lost byte a slow signal reads as a wrong one.
 
 use serde::Deserialize;
 
@@ -14,9 +15,7 @@ use crate::Quality;
 
 const WITHOUT_CRLF: u8 = 32;
 /// Frames in a row that must fit before the first is believed.
-const LOCK_FRAMES_CRLF: usize = 2;
-/// A check byte fits by chance in one of 256 places, so more of them must.
-const LOCK_FRAMES_CHECK: usize = 4;
+const LOCK_FRAMES: usize = 2;
 /// Frame length and text answers stay below this [bytes].
 const LINE_BYTES_MAX: usize = 64;
 
@@ -24,7 +23,7 @@ const LINE_BYTES_MAX: usize = 64;
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Settings {
-    /// Number of the output format, such as 8, or 40 without CR LF.
+    /// Number of the output format, such as 8.
     pub(crate) format: u8,
     /// `CSM1`: the fourth byte of formats 8 and 12 is the XOR of the other three.
     #[serde(default)]
@@ -40,43 +39,38 @@ pub(crate) struct Format {
     n_value_bytes: usize,
     low_first: bool,
     has_check: bool,
-    has_crlf: bool,
 }
 
 impl Format {
     /// The format of that number, with the fourth byte as a check or not.
     pub(crate) fn new(number: u8, checked: bool) -> Result<Self, SettingsError> {
-        let has_crlf = number & WITHOUT_CRLF == 0;
-        let (n_value_bytes, low_first) = match number & !WITHOUT_CRLF {
+        if number & WITHOUT_CRLF != 0 {
+            let (why, use_instead) = ("a lost byte would go unnoticed", number & !WITHOUT_CRLF);
+            return Err(SettingsError(format!(
+                "format {number} is without CR LF, so {why}: use format {use_instead}"
+            )));
+        }
+        let (n_value_bytes, low_first) = match number {
             0 | 8 => (4, false),
             2 => (2, false),
             4 | 12 => (4, true),
             6 => (2, true),
             _ => {
-                let known = "known are 0, 2, 4, 6, 8, 12 and those plus 32";
+                let known = "known are 0, 2, 4, 6, 8 and 12";
                 return Err(SettingsError(format!("format {number}, {known}")));
             }
         };
-        let has_check = checked && number & 8 != 0;
-        if !has_crlf && !has_check {
-            let wanted = "without CR LF a value needs its check byte: format 40 or 44, checked";
-            return Err(SettingsError(format!("format {number}: {wanted}")));
-        }
-        Ok(Self { n_value_bytes, low_first, has_check, has_crlf })
+        Ok(Self { n_value_bytes, low_first, has_check: checked && number & 8 != 0 })
     }
 
     pub(crate) fn n_bytes(self) -> usize {
-        self.n_value_bytes + if self.has_crlf { 2 } else { 0 }
-    }
-
-    fn lock_frames(self) -> usize {
-        if self.has_crlf { LOCK_FRAMES_CRLF } else { LOCK_FRAMES_CHECK }
+        self.n_value_bytes + 2
     }
 
     /// The value of one frame; `Err` when it is none.
     pub(crate) fn read(self, frame: &[u8]) -> Result<(i32, Quality), Damage> {
         let (body, end) = frame.split_at_checked(self.n_value_bytes).ok_or(Damage::Form)?;
-        if self.has_crlf && end != b"\r\n" {
+        if end != b"\r\n" {
             return Err(Damage::Form);
         }
         let mut bytes = [0; 4];
@@ -110,9 +104,7 @@ impl Format {
         if self.low_first {
             bytes.reverse();
         }
-        if self.has_crlf {
-            bytes.extend(b"\r\n");
-        }
+        bytes.extend(b"\r\n");
         bytes
     }
 }
@@ -134,7 +126,7 @@ pub(super) fn open(table: &toml::Table) -> Result<Box<dyn Protocol>, SettingsErr
 impl HbmBinary {
     fn stream(&mut self, bytes: &[u8]) -> Found {
         let n_bytes = self.format.n_bytes();
-        let needed = if self.locked { 1 } else { self.format.lock_frames() };
+        let needed = if self.locked { 1 } else { LOCK_FRAMES };
         for frame in bytes.chunks(n_bytes).take(needed) {
             if frame.len() < n_bytes {
                 return Found::Part;
@@ -203,7 +195,7 @@ mod tests {
 
     #[test]
     fn the_checked_examples_are_read_and_written() {
-        let format = Format::new(8 + 32, true).unwrap();
+        let format = Format::new(8, true).unwrap();
         let examples = [
             (1, [0x00, 0x00, 0x01, 0x01]),
             (-1, [0xFF, 0xFF, 0xFF, 0xFF]),
@@ -213,10 +205,11 @@ mod tests {
             (-1_000_000, [0xF0, 0xBD, 0xC0, 0x8D]),
         ];
         for (raw, bytes) in examples {
-            assert_eq!(format.read(&bytes), Ok((raw, Quality::GOOD)));
-            assert_eq!(format.write(raw), bytes);
+            let frame = [&bytes[..], b"\r\n"].concat();
+            assert_eq!(format.read(&frame), Ok((raw, Quality::GOOD)));
+            assert_eq!(format.write(raw), frame);
         }
-        assert_eq!(format.read(&[0x0F, 0x42, 0x41, 0x0D]), Err(Damage::Checksum));
+        assert_eq!(format.read(b"\x0F\x42\x41\x0D\r\n"), Err(Damage::Checksum));
     }
 
     #[test]
@@ -227,7 +220,8 @@ mod tests {
             assert_eq!(format.n_bytes(), n_bytes);
             assert_eq!(format.read(&format.write(-1234)).unwrap().0, -1234);
         }
-        assert!(Format::new(32, false).is_err());
+        let error = Format::new(40, true).unwrap_err().to_string();
+        assert!(error.contains("without CR LF") && error.contains("use format 8"), "{error}");
         assert!(Format::new(3, false).is_err());
     }
 

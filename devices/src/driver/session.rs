@@ -132,6 +132,11 @@ impl Session {
         self.protocol.as_ref()
     }
 
+    /// Bytes held back until their frame is whole.
+    pub fn n_held(&self) -> usize {
+        self.buffer.len()
+    }
+
     /// The link has opened: everything starts over.
     pub fn open(&mut self, now_ns: u64) {
         self.buffer.clear();

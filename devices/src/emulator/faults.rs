@@ -35,7 +35,8 @@ pub struct Faults {
 }
 
 impl Faults {
-    pub(super) fn command(&mut self, fault: Fault) {
+    /// Puts a fault in force.
+    pub fn command(&mut self, fault: Fault) {
         match fault {
             Fault::Noise(n_bytes) => self.noise_bytes += n_bytes,
             Fault::Stall(on) => self.stalled = on,
