@@ -23,6 +23,7 @@ const BATCH_SAMPLES: usize = 1024;
 /// A live instrument.
 pub struct Instrument {
     name: String,
+    latency_s: f64,
     reader: LinkReader,
     interpreter: Interpreter,
     waiting: VecDeque<InstrumentEvent>,
@@ -46,7 +47,7 @@ impl Instrument {
                 present: Vec::new(),
             })?;
         let name = config.name.clone();
-        Ok(Self { name, reader, interpreter, waiting: VecDeque::new() })
+        Ok(Self { name, latency_s, reader, interpreter, waiting: VecDeque::new() })
     }
 
     /// Waits at most so long for what happened next on the link, and appends what it means.
@@ -59,6 +60,11 @@ impl Instrument {
     /// Counts of each channel since the start.
     pub fn counts(&self) -> impl Iterator<Item = (Quantity, Counts)> {
         self.interpreter.counts()
+    }
+
+    /// What its adapter may hold back [s]; a recording keeps it, since a replay needs it.
+    pub fn latency_s(&self) -> f64 {
+        self.latency_s
     }
 
     /// Whether its thread runs under `SCHED_FIFO`.

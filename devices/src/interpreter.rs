@@ -186,6 +186,11 @@ impl Interpreter {
                 session.poll(*at_ns, &mut sent, &mut decoded);
                 LinkEvent::Sent { at_ns: *at_ns, bytes: bytes.clone(), decoded }
             }
+            LinkEvent::Waited { at_ns, .. } => {
+                let (mut sent, mut decoded) = (Vec::new(), Vec::new());
+                session.poll(*at_ns, &mut sent, &mut decoded);
+                LinkEvent::Waited { at_ns: *at_ns, decoded }
+            }
             LinkEvent::Received { at_ns, bytes, .. } => {
                 let mut decoded = Vec::new();
                 session.receive(bytes, *at_ns, &mut decoded);

@@ -26,8 +26,8 @@ const FIFO_PRIORITY: u8 = 20;
 
 /// What happened on a link; `at_ns` is the host's clock.
 ///
-/// Opened, sent, received and lost are the raw record of a link. With them alone a fresh session
-/// decodes the same again.
+/// Opened, sent, received, waited and lost are the raw record of a link: with their times and bytes
+/// alone a fresh session decodes the same again.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LinkEvent {
     /// The port is open.
