@@ -1,5 +1,6 @@
 //! Time as an argument: the host's clock, and the clocks inside the instruments seen from it.
 
+mod corridor;
 mod counter;
 mod envelope;
 mod paced;
