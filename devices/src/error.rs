@@ -154,7 +154,7 @@ pub enum InstrumentError {
     },
     /// Nothing comes.
     #[error("device \"{device}\": nothing comes from port \"{}\"{}", port.display(),
-        asked(request))]
+        asked(request.as_deref()))]
     Silent {
         /// The device.
         device: String,
@@ -206,8 +206,8 @@ fn numbered(fields: &[String]) -> String {
     named.collect::<Vec<_>>().join(", ")
 }
 
-fn asked(request: &Option<String>) -> String {
-    request.as_ref().map(|request| format!(", asked \"{request}\"")).unwrap_or_default()
+fn asked(request: Option<&str>) -> String {
+    request.map(|request| format!(", asked \"{request}\"")).unwrap_or_default()
 }
 
 fn told(fault: &PortFault) -> String {
@@ -216,9 +216,7 @@ fn told(fault: &PortFault) -> String {
         PortFault::Busy => "is in use by another program".to_owned(),
         PortFault::Forbidden => "may not be opened by this user".to_owned(),
         PortFault::NotSerial => "is no serial port".to_owned(),
-        PortFault::Refused(what, wanted, got) => {
-            format!("refuses {what} \"{wanted}\" and stays at \"{got}\"")
-        }
+        PortFault::Refused(what) => format!("refuses {what}"),
         PortFault::Other(seen) => format!("cannot be opened: {seen}"),
     }
 }

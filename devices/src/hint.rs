@@ -73,7 +73,7 @@ fn port_hint(fault: &PortFault, present: &[std::path::PathBuf]) -> Option<String
                 .to_owned()
         }
         PortFault::NotSerial => "give a port such as /dev/serial/by-id/...".to_owned(),
-        PortFault::Refused(..) => {
+        PortFault::Refused(_) => {
             "set the instrument to 8N1, or use an adapter that takes this setting".to_owned()
         }
         PortFault::Other(_) => return None,

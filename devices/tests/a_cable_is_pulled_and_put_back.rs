@@ -30,10 +30,10 @@ fn last_linked_ns(bench: &Bench) -> u64 {
 
 /// CPU time of this process [s], all threads.
 fn cpu_s() -> f64 {
-    let stat = std::fs::read_to_string("/proc/self/stat").unwrap();
-    let after_name = stat.rsplit(')').next().unwrap();
-    let ticks = after_name.split_whitespace().skip(11).take(2).map(|text| text.parse::<f64>());
-    ticks.map(|ticks| ticks.unwrap()).sum::<f64>() / 100.0
+    let stat = std::fs::read_to_string("/proc/self/stat").expect("Linux tells it");
+    let after_name = stat.rsplit(')').next().unwrap_or_default();
+    let ticks = after_name.split_whitespace().skip(11).take(2);
+    ticks.map(|ticks| ticks.parse::<f64>().expect("a count")).sum::<f64>() / 100.0
 }
 
 #[test]

@@ -40,8 +40,9 @@ fn replay_equals_live(profile: &str, lines: &str) {
     bench.listen_until(|bench| bench.n_samples() >= n_samples + 20);
 
     let pace = bench.config.pace.pace(&bench.config.line);
-    let mut session = Session::new(bench.config.protocol().unwrap(), pace);
-    let mut interpreter = Interpreter::new(&bench.config, bench.instrument.latency_s()).unwrap();
+    let mut session = Session::new(bench.config.protocol().expect("the settings are good"), pace);
+    let mut interpreter = Interpreter::new(&bench.config, bench.instrument.latency_s())
+        .expect("the settings are good");
     let mut replayed = Vec::new();
     for link in bench.links.iter().filter_map(raw) {
         interpreter.replay(&link, &mut session, &mut replayed);

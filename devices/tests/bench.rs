@@ -29,7 +29,7 @@ pub(crate) struct Bench {
 
 /// A device of that profile with these lines of a campaign file, not yet plugged in.
 pub(crate) fn device(profile: &str, lines: &str) -> (TempDir, DeviceConfig) {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a folder");
     let port = folder.path().join("usb-Emulated-if00-port0");
     let text = format!(
         "name = \"bench\"\nprofile = \"{profile}\"\nport = \"{}\"\nparity = \"none\"\n{lines}",
@@ -57,10 +57,12 @@ pub(crate) fn bench(profile: &str, lines: &str, rate_hz: f64) -> Bench {
 pub(crate) fn bench_of(profile: &str, lines: &str, rate_hz: f64, signal: Signal) -> Bench {
     let (folder, config) = device(profile, lines);
     let clock: Arc<dyn Clock> = Arc::new(WallClock::start());
-    let other_end = emulator(&config.driver, &config.settings, rate_hz, signal).unwrap();
+    let other_end =
+        emulator(&config.driver, &config.settings, rate_hz, signal).expect("the settings are good");
     let byte_ns = config.line.byte_ns();
-    let port = EmulatedPort::plug_in(&config.port, other_end, byte_ns, Arc::clone(&clock)).unwrap();
-    let instrument = Instrument::start(&config, Arc::clone(&clock)).unwrap();
+    let port = EmulatedPort::plug_in(&config.port, other_end, byte_ns, Arc::clone(&clock))
+        .expect("a pseudo-terminal");
+    let instrument = Instrument::start(&config, Arc::clone(&clock)).expect("the settings are good");
     Bench {
         port,
         instrument,

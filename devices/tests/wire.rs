@@ -44,15 +44,16 @@ pub(crate) struct Wire {
 
 pub(crate) fn session(name: &str, settings: &str) -> Session {
     let line = Line { baud: 115_200, data_bits: 8, parity: Parity::None, stop_bits: 1 };
-    let table = settings.parse().unwrap();
-    let protocol = (driver(name).unwrap().open)(&table).unwrap_or_else(|error| panic!("{error}"));
+    let table = settings.parse().expect("the settings are good");
+    let protocol = (driver(name).expect("the settings are good").open)(&table)
+        .unwrap_or_else(|error| panic!("{error}"));
     Session::new(protocol, PaceSettings::default().pace(&line))
 }
 
 impl Wire {
     pub(crate) fn new(name: &str, settings: &str, signal: Signal) -> Self {
-        let table = settings.parse().unwrap();
-        let emulator = emulator(name, &table, 200.0, signal).unwrap();
+        let table = settings.parse().expect("the settings are good");
+        let emulator = emulator(name, &table, 200.0, signal).expect("the settings are good");
         let mut session = session(name, settings);
         session.open(0);
         let faults = Faults::default();

@@ -161,6 +161,7 @@ pub fn gain_from_loads(pairs: &[[f64; 2]]) -> Result<(f64, f64, f64), Calibratio
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
 mod tests {
     use super::*;
 

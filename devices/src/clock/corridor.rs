@@ -1,8 +1,8 @@
 //! Lines that lie below all arrivals and above what the adapter's timer can hide.
 //!
 //! A timer that beats with the sampling (16 ms against 100 Hz: a grid of 2 ms) leaves no sample at
-//! the floor of the delay, but the gap between the lowest arrivals and the next ones shows the grid:
-//! the floor is at most one gap below the lowest. Between those two bounds the line must lie.
+//! the floor of the delay, but the gap between the lowest arrivals and the next ones shows the
+//! grid: the floor is at most one gap below the lowest. Between those two the line must lie.
 
 /// Device time and lead of the arrival [s].
 #[derive(Debug, Clone, Copy, PartialEq)]

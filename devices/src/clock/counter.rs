@@ -88,9 +88,9 @@ mod tests {
 
     #[test]
     fn a_wrapping_sequence_counts_what_is_missing() {
+        use CounterStep::{First, Next, Repeated, Skipped};
         let mut counter = Counter::new(8);
         let steps: Vec<_> = [253, 254, 254, 1, 2].map(|value| counter.sequence(value)).into();
-        use CounterStep::{First, Next, Repeated, Skipped};
         let expected = [(253, First), (254, Next), (254, Repeated), (257, Skipped(2)), (258, Next)];
         assert_eq!(steps, expected);
         assert_eq!(counter.sequence(0).1, CounterStep::Restarted);

@@ -1,10 +1,11 @@
 //! From an instrument's clock to the host's, by the lower envelope of the arrivals.
 //!
-//! `arrival = offset + rate · device time + delay`, and the delay has a floor but no ceiling: a busy
-//! host or an adapter that sends every 16 ms only makes it longer. A least-squares line carries the
-//! mean delay as bias; the lower convex hull touches the floor (Moon, Skelly and Towsley 1999;
-//! Zhang, Liu and Xia 2002). Its edge over the mean abscissa is the line. The fixed delay (wire,
-//! conversion) is not seen by it and is declared with the device.
+//! `arrival = offset + rate · device time + delay`, and the delay has a floor but no ceiling: a
+//! busy host or an adapter that sends every 16 ms only makes it longer. A least-squares line
+//! carries the mean delay as bias; the lower convex hull touches the floor (Moon, Skelly and
+//! Towsley 1999; Zhang, Liu and Xia 2002). Where a timer's grid keeps arrivals off the floor, the
+//! line is the middle of a corridor; elsewhere it is the hull's edge over the mean abscissa. The
+//! fixed delay (wire, conversion) is not seen by it and is declared with the device.
 
 use std::collections::VecDeque;
 

@@ -51,10 +51,10 @@ mod tests {
     use super::super::Envelope;
     use super::*;
 
-    /// Feeds 100 Hz for 20 s, with what `lost` and `late_s` say; returns the missing and worst error.
+    /// Feeds 100 Hz for 20 s, as `lost` and `late_s` say; how many are missing, and the last error.
     fn feed(lost: impl Fn(u32) -> bool, late_s: impl Fn(u32) -> f64) -> (u64, f64) {
         let (mut paced, mut envelope) = (Paced::new(100.0), Envelope::new(0.016));
-        let (mut n_missing, mut worst_s) = (0, 0.0);
+        let (mut n_missing, mut error_s) = (0, 0.0);
         for index in (0..2000).filter(|index| !lost(*index)) {
             let truth_s = f64::from(index) * 0.01;
             let arrival_s = 5.0 + truth_s + late_s(index);
@@ -62,9 +62,9 @@ mod tests {
             let (device_s, missing) = paced.next(arrival_s, line.as_ref());
             n_missing += missing;
             envelope.push(device_s, arrival_s);
-            worst_s = envelope.line().unwrap().host_s(device_s) - 5.0 - truth_s;
+            error_s = envelope.line().unwrap().host_s(device_s) - 5.0 - truth_s;
         }
-        (n_missing, worst_s)
+        (n_missing, error_s)
     }
 
     #[test]

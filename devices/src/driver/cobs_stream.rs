@@ -1,6 +1,6 @@
 //! COBS frames with CRC, sequence number and device time: own electronics at kilohertz.
 //!
-//! The layout is in docs/cobs_protocol.md, with a sketch for an Arduino or Teensy.
+//! The layout is in `docs/cobs_protocol.md`, with a sketch for an Arduino or Teensy.
 
 use serde::Deserialize;
 
@@ -24,9 +24,9 @@ const CRC: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_IBM_3740);
 /// `[settings]` of a profile of this driver.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Settings {
+pub(crate) struct Settings {
     /// Values in every frame.
-    fields: usize,
+    pub(crate) fields: usize,
     /// Ask who it is when the port opens; off for boards that only talk.
     #[serde(default)]
     identify: bool,

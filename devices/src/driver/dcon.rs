@@ -243,6 +243,7 @@ impl Protocol for Dcon {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
 mod tests {
     use super::*;
 

@@ -2,8 +2,8 @@
 //!
 //! AD104 operating manual: output formats COF0, 2, 4, 6, 8 and 12. CR and LF occur inside values
 //! too, so frames are counted, not split. Before a value is believed after noise, the frame that
-//! follows it must stand where it should. The formats without CR LF (plus 32) are refused: their XOR
-//! check is the same in every rotation, so after one lost byte a slow signal reads as a wrong one.
+//! follows it must stand where it should. The formats without CR LF (plus 32) are refused: their
+//! XOR check is the same in every rotation, so after one lost byte a slow signal reads as another.
 
 use serde::Deserialize;
 

@@ -1,4 +1,4 @@
-//! Mantracourt ASCII: DSC, DCell and DSCUSB load-cell digitisers.
+//! Mantracourt ASCII: DSC, `DCell` and DSCUSB load-cell digitisers.
 //!
 //! DSC user manual, appendix B; DSCUSB advanced manual p. 19. There is no check sum, so an answer's
 //! form is held to strictly. `OLDVAL` in `STAT` tells a conversion that was read before.

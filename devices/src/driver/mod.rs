@@ -23,7 +23,7 @@ pub use session::{Decoded, Pace, Session, Taken};
 
 pub(crate) use session::shown;
 
-pub(crate) use cobs_stream::{encode_frame, encode_identity, is_who};
+pub(crate) use cobs_stream::{Settings as CobsSettings, encode_frame, encode_identity, is_who};
 pub(crate) use dcon::{Settings as DconSettings, checksum as dcon_checksum};
 pub(crate) use hbm_ascii::Settings as HbmAsciiSettings;
 pub(crate) use hbm_binary::Format as HbmFormat;

@@ -174,7 +174,7 @@ impl Modbus {
             NumberType::Uint32 => f64::from(u32::from_be_bytes(long()?)),
             NumberType::Float32 => f64::from(f32::from_be_bytes(long()?)),
         };
-        // A transmitter without a reading sends NaN: that is a fault of the sensor, not of the line.
+        // A transmitter without a reading sends NaN: the sensor is at fault, not the line.
         let fault = !raw.is_finite();
         let raw = if fault { 0.0 } else { raw };
         Some(value(field, raw, Quality::GOOD.with_if(fault, Quality::SENSOR_FAULT)))
@@ -252,6 +252,7 @@ impl Protocol for Modbus {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
 mod tests {
     use super::*;
 

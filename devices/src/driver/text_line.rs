@@ -92,7 +92,7 @@ impl Protocol for TextLine {
             return Found::Skip { n_bytes };
         }
         match self.pattern.read(line) {
-            Ok(values) => Found::Frame { n_bytes, content: content(values) },
+            Ok(values) => Found::Frame { n_bytes, content: content(&values) },
             Err(Mismatch::Form) => Found::Noise { n_bytes, damage: Damage::Form },
             Err(Mismatch::Checksum) => Found::Noise { n_bytes, damage: Damage::Checksum },
         }
@@ -108,7 +108,7 @@ impl Protocol for TextLine {
     }
 }
 
-fn content(line: PatternValues) -> Content {
+fn content(line: &PatternValues) -> Content {
     let values = line.fields.iter().map(|(field, raw)| value(*field, *raw, Quality::GOOD));
     Content::Values { values: values.collect(), sequence: line.sequence, ticks: line.ticks }
 }

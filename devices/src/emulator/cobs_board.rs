@@ -1,8 +1,8 @@
-//! A board that sends COBS frames, as the sketch in docs/cobs_protocol.md does.
+//! A board that sends COBS frames, as the sketch in `docs/cobs_protocol.md` does.
 
 use super::line_pace::{Conversion, LinePace, send_due};
 use super::{Emulator, Faults, Signal};
-use crate::driver::{SettingsError, encode_frame, encode_identity, is_who};
+use crate::driver::{CobsSettings, SettingsError, encode_frame, encode_identity, is_who, settings};
 
 const IDENTITY: &str = "rolltank emulated board";
 
@@ -18,8 +18,8 @@ pub(super) fn open(
     rate_hz: f64,
     signal: Signal,
 ) -> Result<Box<dyn Emulator>, SettingsError> {
-    let n_fields = table.get("fields").and_then(toml::Value::as_integer).unwrap_or(1);
-    let n_fields = usize::try_from(n_fields).unwrap_or(1);
+    let settings: CobsSettings = settings(table)?;
+    let n_fields = settings.fields;
     Ok(Box::new(CobsBoard { n_fields, pace: LinePace::new(rate_hz), signal, heard: Vec::new() }))
 }
 

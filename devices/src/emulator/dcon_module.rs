@@ -83,7 +83,7 @@ impl DconModules {
             ("$", "4") => {
                 let (value, was_read) = self.held[tag];
                 self.held[tag].1 = true;
-                let fresh = if was_read { 0 } else { 1 };
+                let fresh = u8::from(!was_read);
                 format!(">{address:02X}{fresh}{}", self.data(value, faults))
             }
             ("$" | "%", _) => format!("?{address:02X}"),

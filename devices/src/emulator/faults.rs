@@ -22,6 +22,7 @@ pub enum Fault {
 }
 
 /// The faults in force.
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Faults {
     pub(super) noise_bytes: usize,

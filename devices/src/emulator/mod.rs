@@ -1,7 +1,7 @@
 //! Instruments that are not there: each protocol's other end, on real pseudo-terminals.
 //!
-//! Written from the manuals' frames, with the same `[settings]` as the driver, one file each and one
-//! line in [`EMULATORS`]. Faults come on command. The signals come from outside, so that a test can
+//! Written from the manuals' frames, with the same `[settings]` as the driver, one file each and
+//! one line in [`EMULATORS`]. Faults come on command. The signals come from outside, so that a test can
 //! send a number and a simulated tank a roll.
 
 mod cobs_board;
@@ -35,12 +35,15 @@ pub const EMULATORS: [EmulatorEntry; 8] = [
     EmulatorEntry { driver: "cobs", open: cobs_board::open },
 ];
 
+/// How an emulator is made.
+pub type Open = fn(&toml::Table, f64, Signal) -> Result<Box<dyn Emulator>, SettingsError>;
+
 /// An emulator's line in [`EMULATORS`].
 pub struct EmulatorEntry {
     /// The driver that it answers.
     pub driver: &'static str,
     /// Makes it from the driver's settings, its own conversion rate [Hz] and its signals.
-    pub open: fn(&toml::Table, f64, Signal) -> Result<Box<dyn Emulator>, SettingsError>,
+    pub open: Open,
 }
 
 /// The emulator that answers a driver.

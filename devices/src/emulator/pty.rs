@@ -9,7 +9,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{OpenOptionsExt, symlink};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
@@ -197,10 +197,9 @@ impl Bench {
     fn run(&mut self, orders: &Receiver<Command>, done: &Sender<()>) {
         loop {
             match orders.try_recv() {
-                Ok(Command::Stop) => break,
-                Ok(command) => self.obey(command),
-                Err(std::sync::mpsc::TryRecvError::Disconnected) => break,
-                Err(std::sync::mpsc::TryRecvError::Empty) => {
+                Ok(Command::Stop) | Err(TryRecvError::Disconnected) => break,
+                Ok(command) => self.obey(&command),
+                Err(TryRecvError::Empty) => {
                     self.turn();
                     continue;
                 }
@@ -213,9 +212,9 @@ impl Bench {
         done.send(()).ok();
     }
 
-    fn obey(&mut self, command: Command) {
+    fn obey(&mut self, command: &Command) {
         match command {
-            Command::Fault(fault) => self.faults.command(fault),
+            Command::Fault(fault) => self.faults.command(*fault),
             Command::Unplug => {
                 self.cable = None;
                 self.on_line.clear();

@@ -83,8 +83,8 @@ pub enum PortFault {
     Forbidden,
     /// It is no serial port.
     NotSerial,
-    /// It does not take a setting: which, what was wanted, what it has.
-    Refused(&'static str, String, String),
+    /// It does not take a setting: which, and what it has instead.
+    Refused(String),
     /// Anything else, in the system's words.
     Other(String),
 }
@@ -128,21 +128,23 @@ impl Port {
         let inner = builder.open_native().map_err(|error| fault(&error))?;
         let port = Self { inner };
         // The driver below may drop a setting in silence; a pseudo-terminal has no parity bit.
-        port.check("parity", parity, serialport::SerialPort::parity)?;
-        port.check("data bits", data_bits, serialport::SerialPort::data_bits)?;
-        port.check("stop bits", stop_bits, serialport::SerialPort::stop_bits)?;
+        port.check("parity", &parity, serialport::SerialPort::parity)?;
+        port.check("data bits", &data_bits, serialport::SerialPort::data_bits)?;
+        port.check("stop bits", &stop_bits, serialport::SerialPort::stop_bits)?;
         Ok(port)
     }
 
     fn check<T: PartialEq + std::fmt::Display>(
         &self,
         what: &'static str,
-        wanted: T,
+        wanted: &T,
         read: impl Fn(&serialport::TTYPort) -> serialport::Result<T>,
     ) -> Result<(), PortFault> {
         match read(&self.inner) {
-            Ok(got) if got == wanted => Ok(()),
-            Ok(got) => Err(PortFault::Refused(what, wanted.to_string(), got.to_string())),
+            Ok(got) if got == *wanted => Ok(()),
+            Ok(got) => {
+                Err(PortFault::Refused(format!("{what} \"{wanted}\" and stays at \"{got}\"")))
+            }
             Err(error) => Err(PortFault::Other(error.to_string())),
         }
     }
@@ -201,8 +203,8 @@ mod tests {
 
     #[test]
     fn the_systems_words_become_faults() {
-        let of = |kind, text: &str| fault(&serialport::Error::new(kind, text));
         use serialport::ErrorKind as Kind;
+        let of = |kind, text: &str| fault(&serialport::Error::new(kind, text));
         assert_eq!(of(Kind::NoDevice, "Unable to acquire exclusive lock"), PortFault::Busy);
         let forbidden = of(Kind::Io(ErrorKind::PermissionDenied), "Permission denied");
         assert_eq!(forbidden, PortFault::Forbidden);

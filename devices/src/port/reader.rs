@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
@@ -137,10 +137,7 @@ impl LinkReader {
 
     /// The next event, waited for at most so long.
     pub fn next(&self, wait: Duration) -> Option<LinkEvent> {
-        match self.events.recv_timeout(wait) {
-            Ok(event) => Some(event),
-            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => None,
-        }
+        self.events.recv_timeout(wait).ok()
     }
 
     /// Whether the thread runs under `SCHED_FIFO`.
@@ -180,13 +177,11 @@ impl Outlet {
     fn send(&mut self, event: LinkEvent) {
         if self.n_dropped > 0 {
             let overflow = LinkEvent::Overflow { n_events: self.n_dropped };
-            match self.sender.try_send(overflow) {
-                Ok(()) => self.n_dropped = 0,
-                Err(_) => {
-                    self.n_dropped += 1;
-                    return;
-                }
+            if self.sender.try_send(overflow).is_err() {
+                self.n_dropped += 1;
+                return;
             }
+            self.n_dropped = 0;
         }
         if let Err(TrySendError::Full(_)) = self.sender.try_send(event) {
             self.n_dropped += 1;
