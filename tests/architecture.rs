@@ -50,7 +50,7 @@ const OWNERS: [(&str, &[&str]); 20] = [
     ("mcap", &["replay/src"]),
     ("tokio", &[]),
     ("serialport", &["devices/src/port"]),
-    ("thread_priority", &["devices/src/port"]),
+    ("thread_priority", &["devices/src/realtime"]),
     ("rustix", &["devices/src/emulator"]),
     ("crc", &["devices/src/driver"]),
     ("cobs", &["devices/src/driver"]),

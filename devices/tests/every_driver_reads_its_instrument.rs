@@ -2,6 +2,7 @@
 
 use devices::driver::DRIVERS;
 use devices::emulator::{EMULATORS, Fault};
+use devices::probe::probe;
 use devices::{InstrumentEvent, Quality};
 
 use crate::bench::{Bench, bench, bench_of, channels, swing};
@@ -213,4 +214,53 @@ fn an_over_driven_input_is_flagged_by_every_instrument_that_can() {
         let (_, counts) = bench.instrument.counts().next().unwrap();
         assert!(counts.over_range >= 5, "{profile}: {counts:?}");
     }
+}
+
+#[test]
+fn a_probe_tells_who_answers_and_what_it_reads() {
+    let lines = format!("[settings]\nstations = [1, 2]\n{}", channels(2));
+    let bench = bench("mantracourt-dsc", &lines, 500.0);
+    let Bench { port, instrument, config, clock, .. } = bench;
+    // One program at a time has the port.
+    drop(instrument);
+    let report = probe(&config, 1_000_000_000, clock).unwrap();
+    drop(port);
+    assert!(report.linked && report.troubles.is_empty(), "{report:?}");
+    assert_eq!(report.identity.as_deref(), Some("Mantracourt version 3.1"));
+    for channel in &report.channels {
+        let rate_hz = channel.rate_hz.unwrap();
+        assert!(rate_hz > 20.0 && channel.counts.received > 10, "{channel:?}");
+        assert!(channel.last.is_some() && channel.quality == Quality::LAGGED, "{channel:?}");
+    }
+}
+
+#[test]
+fn times_are_true_within_their_bound_though_the_boards_clock_is_fast() {
+    // The board says when it measured, by the host's clock, in the value itself.
+    let microseconds = |_: usize, time_s: f64| 1e6 * time_s;
+    let lines = format!("[settings]\nfields = 1\n{}", channels(1));
+    let mut bench = bench_of("cobs-board", &lines, 200.0, Box::new(microseconds));
+    bench.port.fault(Fault::DriftPpm(50.0));
+    bench.listen_for(8.0);
+    let samples = bench.samples();
+    let error_s = |measured: &devices::Measured| measured.sample.time_s - measured.raw * 1e-6;
+    let errors_s = samples.iter().map(error_s);
+    let worst =
+        samples.iter().skip(20).map(error_s).fold((0.0, 0.0), |(low, high), error_s| {
+            (f64::min(low, error_s), f64::max(high, error_s))
+        });
+    // The emulator looks at its clock every half millisecond, and so is late by up to that.
+    const TURN_S: f64 = 0.5e-3;
+    let late = |(measured, error_s): &(&devices::Measured, f64)| {
+        *error_s < -measured.bound_s - 5e-6 || *error_s > measured.bound_s + TURN_S + 0.2e-3
+    };
+    let n_late = samples.iter().zip(errors_s).skip(20).filter(late).count();
+    let n_samples = samples.len();
+    assert!(
+        n_samples > 1500 && 20 * n_late <= n_samples,
+        "{n_late} of {n_samples} beyond, {worst:?}"
+    );
+    let bound_s = samples.last().unwrap().bound_s;
+    println!("bound after 8 s: {:.3} ms; {n_late} of {n_samples} beyond", 1e3 * bound_s);
+    assert!(bound_s < 0.5e-3, "{bound_s}");
 }

@@ -46,7 +46,8 @@ impl LinePace {
     /// The conversions since the last call, for instruments that send unasked.
     pub(super) fn due(&mut self, now_s: f64, faults: &Faults) -> Vec<Conversion> {
         let start_s = *self.start_s.get_or_insert(now_s);
-        let n_due = ((now_s - start_s) / self.period_s(faults)).max(0.0) as u64;
+        // The first conversion is made at the start.
+        let n_due = ((now_s - start_s) / self.period_s(faults)).max(0.0) as u64 + 1;
         let last = n_due.min(self.n_made + AT_ONCE);
         let due = (self.n_made..last).map(|index| self.conversion(index, start_s, faults));
         let due = due.collect();

@@ -15,14 +15,18 @@ use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{OFlags, fcntl_setfl};
+use rustix::io::Errno;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, ioctl_tiocnxcl, tcgetattr, tcsetattr};
 
 use super::{Emulator, Fault, Faults};
 use crate::clock::{Clock, NS_PER_S};
+use crate::realtime::become_realtime;
 
 /// Longest sleep of the thread [ns]; a line is at most so late.
 const TURN_NS: i64 = 500_000;
+/// A full terminal is waited for so long, before its reader is given up [ns].
+const PATIENCE_NS: i64 = 300_000_000;
 
 /// The system gives no pseudo-terminal.
 #[derive(Debug, thiserror::Error)]
@@ -124,6 +128,8 @@ struct Cable {
     master: OwnedFd,
     /// Held open, since the other end would read errors between two openings of the port.
     slave: File,
+    /// Somebody takes what is written.
+    is_read: bool,
 }
 
 impl Cable {
@@ -145,7 +151,7 @@ impl Cable {
             fs::remove_file(path)?;
         }
         symlink(&name, path)?;
-        Ok(Self { path: path.to_owned(), master, slave })
+        Ok(Self { path: path.to_owned(), master, slave, is_read: true })
     }
 
     /// What the host sent.
@@ -156,20 +162,28 @@ impl Cable {
         bytes
     }
 
-    /// Bytes that nobody reads are lost, as on a line.
-    fn write(&self, bytes: &[u8]) {
+    /// Bytes that nobody reads are lost, as on a line; a reader that is only slow is waited for.
+    fn write(&mut self, bytes: &[u8]) {
         let mut rest = bytes;
-        while let Ok(n_bytes) = rustix::io::write(&self.master, rest) {
-            rest = &rest[n_bytes..];
-            if rest.is_empty() {
-                break;
+        while !rest.is_empty() {
+            match rustix::io::write(&self.master, rest) {
+                Ok(n_bytes) => {
+                    rest = &rest[n_bytes..];
+                    self.is_read = true;
+                }
+                Err(Errno::AGAIN) if self.is_read => {
+                    let patience = Timespec { tv_sec: 0, tv_nsec: PATIENCE_NS };
+                    let mut ready = [PollFd::new(&self.master, PollFlags::OUT)];
+                    self.is_read = poll(&mut ready, Some(&patience)).is_ok_and(|n| n > 0);
+                }
+                Err(_) => return,
             }
         }
     }
 
-    /// Waits for bytes from the host, or for a turn.
-    fn wait(&self) {
-        let turn = Timespec { tv_sec: 0, tv_nsec: TURN_NS };
+    /// Waits for bytes from the host at most so long [ns].
+    fn wait(&self, wait_ns: i64) {
+        let turn = Timespec { tv_sec: 0, tv_nsec: wait_ns };
         let mut ready = [PollFd::new(&self.master, PollFlags::IN)];
         // Whatever ends the wait, the loop looks at everything again.
         poll(&mut ready, Some(&turn)).ok();
@@ -195,6 +209,8 @@ struct Bench {
 
 impl Bench {
     fn run(&mut self, orders: &Receiver<Command>, done: &Sender<()>) {
+        // An instrument keeps its own time, whatever the host is busy with.
+        become_realtime();
         loop {
             match orders.try_recv() {
                 Ok(Command::Stop) | Err(TryRecvError::Disconnected) => break,
@@ -250,12 +266,18 @@ impl Bench {
         while !self.faults.stalled
             && let Some((_, bytes)) = self.on_line.pop_front_if(|(due_ns, _)| *due_ns <= now_ns)
         {
-            if let Some(cable) = &self.cable {
+            if let Some(cable) = &mut self.cable {
                 cable.write(&bytes);
             }
         }
         match &self.cable {
-            Some(cable) => cable.wait(),
+            Some(cable) => {
+                // What is on the line arrives when it is due, not a turn later.
+                let due_ns = self.on_line.front().map(|(due_ns, _)| due_ns.saturating_sub(now_ns));
+                let due_ns = due_ns.filter(|_| !self.faults.stalled);
+                let wait = self.clock.real(due_ns.unwrap_or(u64::MAX / 2)).as_nanos();
+                cable.wait(i64::try_from(wait).unwrap_or(TURN_NS).clamp(10_000, TURN_NS));
+            }
             None => thread::sleep(Duration::from_millis(1)),
         }
     }

@@ -11,6 +11,7 @@ use std::time::Duration;
 use super::{Arrival, Line, Port, PortFault};
 use crate::clock::Clock;
 use crate::driver::{Decoded, Session};
+use crate::realtime::become_realtime;
 
 /// Longest wait for bytes before the port itself is looked at again; a hang-up ends it at once.
 const IDLE_MAX_MS: u64 = 25;
@@ -21,8 +22,6 @@ const SILENCE_NS: u64 = 1_000_000_000;
 /// Events that may wait; at 2 kHz more than five seconds of them.
 const QUEUE_EVENTS: usize = 16_384;
 const READ_BYTES: usize = 4096;
-/// Priority under `SCHED_FIFO`, below what the kernel's own threads have.
-const FIFO_PRIORITY: u8 = 20;
 
 /// What happened on a link; `at_ns` is the host's clock.
 ///
@@ -154,17 +153,6 @@ impl Drop for LinkReader {
             drop(thread.join());
         }
     }
-}
-
-fn become_realtime() -> bool {
-    use thread_priority::{
-        RealtimeThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy,
-        set_thread_priority_and_policy, thread_native_id,
-    };
-    let Ok(priority) = FIFO_PRIORITY.try_into() else { return false };
-    let fifo = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
-    let priority = ThreadPriority::Crossplatform(priority);
-    set_thread_priority_and_policy(thread_native_id(), priority, fifo).is_ok()
 }
 
 /// The sending end of the queue, which never blocks the reader.
