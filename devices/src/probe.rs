@@ -46,9 +46,9 @@ pub struct ChannelReport {
 pub fn probe(
     config: &DeviceConfig,
     duration_ns: u64,
-    clock: Arc<dyn Clock>,
+    clock: &Arc<dyn Clock>,
 ) -> Result<ProbeReport, InstrumentError> {
-    let mut instrument = Instrument::start(config, Arc::clone(&clock))?;
+    let mut instrument = Instrument::start(config, Arc::clone(clock))?;
     let mut report =
         ProbeReport { linked: false, identity: None, channels: Vec::new(), troubles: Vec::new() };
     let mut heard: Vec<(Quantity, Heard)> =

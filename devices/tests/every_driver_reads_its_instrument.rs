@@ -223,7 +223,7 @@ fn a_probe_tells_who_answers_and_what_it_reads() {
     let Bench { port, instrument, config, clock, .. } = bench;
     // One program at a time has the port.
     drop(instrument);
-    let report = probe(&config, 1_000_000_000, clock).unwrap();
+    let report = probe(&config, 1_000_000_000, &clock).unwrap();
     drop(port);
     assert!(report.linked && report.troubles.is_empty(), "{report:?}");
     assert_eq!(report.identity.as_deref(), Some("Mantracourt version 3.1"));
@@ -236,6 +236,8 @@ fn a_probe_tells_who_answers_and_what_it_reads() {
 
 #[test]
 fn times_are_true_within_their_bound_though_the_boards_clock_is_fast() {
+    // The emulator looks at its clock every half millisecond, and so is late by up to that.
+    const TURN_S: f64 = 0.5e-3;
     // The board says when it measured, by the host's clock, in the value itself.
     let microseconds = |_: usize, time_s: f64| 1e6 * time_s;
     let lines = format!("[settings]\nfields = 1\n{}", channels(1));
@@ -249,8 +251,6 @@ fn times_are_true_within_their_bound_though_the_boards_clock_is_fast() {
         samples.iter().skip(20).map(error_s).fold((0.0, 0.0), |(low, high), error_s| {
             (f64::min(low, error_s), f64::max(high, error_s))
         });
-    // The emulator looks at its clock every half millisecond, and so is late by up to that.
-    const TURN_S: f64 = 0.5e-3;
     let late = |(measured, error_s): &(&devices::Measured, f64)| {
         *error_s < -measured.bound_s - 5e-6 || *error_s > measured.bound_s + TURN_S + 0.2e-3
     };
