@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use crate::channel::{Channel, Counts};
 use crate::driver::{Decoded, FieldValue, Session, Taken};
 use crate::error::InstrumentError;
-use crate::port::{LinkEvent, found_ports};
+use crate::port::LinkEvent;
 use crate::setup::DeviceConfig;
 use crate::stamp::{Stamp, StampSettings, Stamper};
 use crate::trouble::Troubles;
@@ -117,7 +117,7 @@ impl Interpreter {
             channels: config.channels.iter().map(state).collect(),
             quality: Quality::GOOD.with_if(config.lag.is_flagged(), Quality::LAGGED),
             stamper: Stamper::new(settings),
-            troubles: Troubles::new(config),
+            troubles: Troubles::new(config, protocol.fields().len()),
             gap_from_s: None,
             last_time_s: None,
         })
@@ -137,28 +137,26 @@ impl Interpreter {
                 out.push(InstrumentEvent::Linked { at_ns: *at_ns });
             }
             LinkEvent::Received { at_ns, bytes, decoded } => {
-                self.troubles.received(bytes, *at_ns);
-                self.decoded(decoded, out);
-                out.extend(self.troubles.judge(*at_ns).map(InstrumentEvent::Trouble));
+                self.troubles.received(bytes);
+                self.decoded(decoded, *at_ns, out);
             }
             LinkEvent::Sent { at_ns, decoded, .. } | LinkEvent::Waited { at_ns, decoded } => {
-                self.decoded(decoded, out);
-                out.extend(self.troubles.judge(*at_ns).map(InstrumentEvent::Trouble));
+                self.decoded(decoded, *at_ns, out);
             }
             LinkEvent::Silence { at_ns } => {
-                out.extend(self.troubles.silence(*at_ns).map(InstrumentEvent::Trouble));
+                self.troubles.silence();
+                out.extend(self.troubles.take(*at_ns).into_iter().map(InstrumentEvent::Trouble));
             }
             LinkEvent::Lost { at_ns, seen } => {
                 self.gap_from_s = self.gap_from_s.or(self.last_time_s);
                 out.push(InstrumentEvent::LinkLost { at_ns: *at_ns, seen: seen.clone() });
             }
-            LinkEvent::Absent { fault, .. } => {
-                let present = found_ports().into_iter().map(|port| port.path).collect();
+            LinkEvent::Absent { fault, present, .. } => {
                 out.push(InstrumentEvent::Trouble(InstrumentError::Port {
                     device: self.device.clone(),
                     port: self.port.clone(),
                     fault: fault.clone(),
-                    present,
+                    present: present.clone(),
                 }));
             }
             LinkEvent::Overflow { n_events } => {
@@ -201,16 +199,13 @@ impl Interpreter {
         self.interpret(&event, out);
     }
 
-    fn decoded(&mut self, decoded: &[Decoded], out: &mut Vec<InstrumentEvent>) {
+    fn decoded(&mut self, decoded: &[Decoded], at_ns: u64, out: &mut Vec<InstrumentEvent>) {
         for what in decoded {
             match what {
                 Decoded::Values { values, sequence, ticks, taken } => {
                     self.values(values, (*sequence, *ticks), *taken, out);
                 }
-                Decoded::Identity(text) => {
-                    out.extend(self.troubles.identity(text).map(InstrumentEvent::Trouble));
-                    out.push(InstrumentEvent::Identity(text.clone()));
-                }
+                Decoded::Identity(text) => out.push(InstrumentEvent::Identity(text.clone())),
                 Decoded::Silent { fields, .. } => {
                     self.count(
                         |channel| fields.contains(&channel.field),
@@ -225,6 +220,7 @@ impl Interpreter {
             }
             self.troubles.decoded(what);
         }
+        out.extend(self.troubles.take(at_ns).into_iter().map(InstrumentEvent::Trouble));
     }
 
     fn count(&mut self, of: impl Fn(&Channel) -> bool, add: impl Fn(&mut Counts)) {

@@ -10,10 +10,12 @@ use crate::setup::DeviceConfig;
 const GARBAGE_BYTES: u64 = 64;
 /// And for so long [ns], since an instrument may be in the middle of its boot message.
 const GARBAGE_NS: u64 = 1_000_000_000;
-/// Requests in a row without an answer.
+/// Requests in a row without an answer, before silence is told.
 const SILENT_REQUESTS: u32 = 5;
-/// Answers in a row that nobody asked for.
-const UNASKED_ANSWERS: u32 = 3;
+/// Weight of answers that nobody asked for, before they are told.
+const UNASKED_MAX: u32 = 6;
+/// Weight of one of them; every answer that was asked for takes one off.
+const UNASKED_WEIGHT: u32 = 2;
 
 /// Watches one link.
 pub(crate) struct Troubles {
@@ -25,15 +27,20 @@ pub(crate) struct Troubles {
     n_bytes: u64,
     n_frames: u64,
     seen: String,
-    silent: (u32, String),
-    unasked: (u32, String),
-    refused: Option<InstrumentError>,
+    /// Requests in a row that did not bring a field, by field.
+    silent: Vec<u32>,
+    /// The last request without an answer.
+    request: Option<String>,
+    unasked: u32,
+    /// Certain, and not yet told.
+    found: Vec<InstrumentError>,
     /// Told and not yet over.
     told: Vec<std::mem::Discriminant<InstrumentError>>,
+    silence_told: bool,
 }
 
 impl Troubles {
-    pub(crate) fn new(config: &DeviceConfig) -> Self {
+    pub(crate) fn new(config: &DeviceConfig, n_fields: usize) -> Self {
         Self {
             device: config.name.clone(),
             port: config.port.clone(),
@@ -43,10 +50,12 @@ impl Troubles {
             n_bytes: 0,
             n_frames: 0,
             seen: String::new(),
-            silent: (0, String::new()),
-            unasked: (0, String::new()),
-            refused: None,
+            silent: vec![0; n_fields],
+            request: None,
+            unasked: 0,
+            found: Vec::new(),
             told: Vec::new(),
+            silence_told: false,
         }
     }
 
@@ -54,12 +63,15 @@ impl Troubles {
         self.opened_ns = at_ns;
         self.n_bytes = 0;
         self.n_frames = 0;
-        self.silent.0 = 0;
-        self.unasked.0 = 0;
+        self.silent.fill(0);
+        self.request = None;
+        self.unasked = 0;
+        self.found.clear();
         self.told.clear();
+        self.silence_told = false;
     }
 
-    pub(crate) fn received(&mut self, bytes: &[u8], _at_ns: u64) {
+    pub(crate) fn received(&mut self, bytes: &[u8]) {
         self.n_bytes += bytes.len() as u64;
         if self.n_frames == 0 {
             self.seen = shown(bytes);
@@ -67,82 +79,94 @@ impl Troubles {
     }
 
     pub(crate) fn decoded(&mut self, what: &Decoded) {
+        let (device, port) = (self.device.clone(), self.port.clone());
         match what {
-            Decoded::Values { .. } | Decoded::Identity(_) => {
+            Decoded::Values { values, .. } => {
                 self.n_frames += 1;
-                self.silent.0 = 0;
-                if matches!(what, Decoded::Values { .. }) {
-                    self.unasked.0 = self.unasked.0.saturating_sub(1);
+                self.unasked = self.unasked.saturating_sub(1);
+                for value in values {
+                    if let Some(silent) = self.silent.get_mut(value.field) {
+                        *silent = 0;
+                    }
+                }
+                // The next silence is another one.
+                self.silence_told &= self.silent.iter().any(|silent| *silent > 0);
+            }
+            Decoded::Identity(seen) => {
+                self.n_frames += 1;
+                let expected = self.identity.clone();
+                if let Some(expected) = expected.filter(|expected| !seen.contains(expected)) {
+                    let seen = seen.clone();
+                    self.once(InstrumentError::WrongDevice { device, port, expected, seen });
                 }
             }
-            Decoded::Silent { request, .. } => {
-                self.silent = (self.silent.0 + 1, request.clone());
+            Decoded::Silent { request, fields, .. } => self.no_answer(request, fields),
+            Decoded::Unasked { seen } => {
+                self.unasked += UNASKED_WEIGHT;
+                if self.unasked >= UNASKED_MAX {
+                    self.unasked = 0;
+                    let seen = seen.clone();
+                    self.once(InstrumentError::Unasked { device, port, seen });
+                }
             }
-            Decoded::Unasked { seen } => self.unasked = (self.unasked.0 + 2, seen.clone()),
             Decoded::Refused { request, reply } => {
                 self.n_frames += 1;
-                self.silent.0 = 0;
-                self.refused = Some(InstrumentError::Refused {
-                    device: self.device.clone(),
-                    port: self.port.clone(),
-                    request: request.clone(),
-                    reply: reply.clone(),
-                });
+                let (request, reply) = (request.clone(), reply.clone());
+                self.once(InstrumentError::Refused { device, port, request, reply });
             }
             Decoded::Damaged { .. } | Decoded::Missed { .. } => {}
         }
     }
 
-    /// A wrong answer to the question who it is.
-    pub(crate) fn identity(&mut self, seen: &str) -> Option<InstrumentError> {
-        let expected =
-            self.identity.clone().filter(|expected| !seen.contains(expected.as_str()))?;
-        let (device, port) = (self.device.clone(), self.port.clone());
-        self.once(InstrumentError::WrongDevice { device, port, expected, seen: seen.to_owned() })
+    /// One of several stations may be silent while the others talk.
+    fn no_answer(&mut self, request: &str, fields: &[usize]) {
+        self.request = Some(request.to_owned());
+        let mut longest = 0;
+        for field in fields {
+            if let Some(silent) = self.silent.get_mut(*field) {
+                *silent += 1;
+                longest = longest.max(*silent);
+            }
+        }
+        if longest >= SILENT_REQUESTS {
+            self.silence();
+        }
     }
 
-    /// Not a byte came for a second.
-    pub(crate) fn silence(&mut self, _at_ns: u64) -> Option<InstrumentError> {
-        let (n_silent, request) = &self.silent;
-        let request = (*n_silent > 0).then(|| request.clone());
+    /// Not a byte came for a second, or not an answer to several requests.
+    pub(crate) fn silence(&mut self) {
+        // Bytes that make no frame are garbage, which is told with more to go by.
+        let garbage = self.n_bytes >= GARBAGE_BYTES && self.n_frames == 0;
+        if self.silence_told || garbage {
+            return;
+        }
+        self.silence_told = true;
         let (device, port) = (self.device.clone(), self.port.clone());
-        self.once(InstrumentError::Silent { device, port, request })
+        self.found.push(InstrumentError::Silent { device, port, request: self.request.clone() });
     }
 
-    /// The trouble that is certain by now.
-    pub(crate) fn judge(&mut self, now_ns: u64) -> Option<InstrumentError> {
-        let (device, port) = (self.device.clone(), self.port.clone());
-        if let Some(refused) = self.refused.take() {
-            return self.once(refused);
-        }
-        if 2 * UNASKED_ANSWERS <= self.unasked.0 {
-            self.unasked.0 = 0;
-            return self.once(InstrumentError::Unasked {
-                device,
-                port,
-                seen: self.unasked.1.clone(),
-            });
-        }
+    /// The troubles that are certain by now and were not told before.
+    pub(crate) fn take(&mut self, now_ns: u64) -> Vec<InstrumentError> {
         let garbage = self.n_frames == 0
             && self.n_bytes >= GARBAGE_BYTES
             && now_ns.saturating_sub(self.opened_ns) >= GARBAGE_NS;
         if garbage {
-            let (line, n_bytes, seen) = (self.line.clone(), self.n_bytes, self.seen.clone());
-            return self.once(InstrumentError::Garbage { device, port, line, n_bytes, seen });
+            self.once(InstrumentError::Garbage {
+                device: self.device.clone(),
+                port: self.port.clone(),
+                line: self.line.clone(),
+                n_bytes: self.n_bytes,
+                seen: self.seen.clone(),
+            });
         }
-        if self.n_bytes == 0 && self.silent.0 >= SILENT_REQUESTS {
-            let request = Some(self.silent.1.clone());
-            return self.once(InstrumentError::Silent { device, port, request });
-        }
-        None
+        std::mem::take(&mut self.found)
     }
 
-    fn once(&mut self, error: InstrumentError) -> Option<InstrumentError> {
+    fn once(&mut self, error: InstrumentError) {
         let kind = std::mem::discriminant(&error);
-        if self.told.contains(&kind) {
-            return None;
+        if !self.told.contains(&kind) {
+            self.told.push(kind);
+            self.found.push(error);
         }
-        self.told.push(kind);
-        Some(error)
     }
 }

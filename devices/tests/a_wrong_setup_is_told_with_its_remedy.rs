@@ -163,6 +163,29 @@ fn an_address_where_nobody_is_is_told() {
 }
 
 #[test]
+fn one_silent_station_among_others_is_told() {
+    let lines = format!("[settings]\nstations = [1, 14]\n{}", channels(2));
+    let (_folder, config) = device("mantracourt-dsc", &lines);
+    let _port = plug_in(&config, "mantracourt", "stations = [1]\nsnapshot = true");
+    let told = first_trouble(&config);
+    assert!(told.contains("nothing comes from port"), "{told}");
+    assert!(told.contains("asked \"!014:"), "{told}");
+}
+
+#[test]
+fn every_silence_is_told_once() {
+    let mut bench = bench("cobs-board", &channels(2), 100.0);
+    for n_silences in 1..=2 {
+        bench.port.fault(Fault::Mute(false));
+        let n_samples = bench.n_samples();
+        bench.listen_until(|bench| bench.n_samples() > n_samples + 10);
+        bench.port.fault(Fault::Mute(true));
+        bench.listen_for(1.6);
+        assert_eq!(bench.troubles().len(), n_silences, "{:?}", bench.troubles());
+    }
+}
+
+#[test]
 fn a_refused_request_is_told() {
     let field = "[[settings.fields]]\nfunction = 3\naddress = 40\ntype = \"int16\"\n";
     let (_folder, config) = device("modbus-transmitter", &format!("{field}{}", channels(1)));

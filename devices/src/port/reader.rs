@@ -8,7 +8,7 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use super::{Arrival, Line, Port, PortFault};
+use super::{Arrival, Line, Port, PortFault, found_ports};
 use crate::clock::Clock;
 use crate::driver::{Decoded, Session};
 use crate::realtime::become_realtime;
@@ -77,6 +77,8 @@ pub enum LinkEvent {
         at_ns: u64,
         /// Why.
         fault: PortFault,
+        /// The ports that are there instead.
+        present: Vec<PathBuf>,
     },
     /// Events were dropped, because nobody took them.
     Overflow {
@@ -197,8 +199,9 @@ impl Link {
                 Err(fault) => {
                     if told.as_ref() != Some(&fault) {
                         let at_ns = self.clock.now_ns();
-                        self.outlet.send(LinkEvent::Absent { at_ns, fault: fault.clone() });
-                        told = Some(fault);
+                        let present = found_ports().into_iter().map(|port| port.path).collect();
+                        told = Some(fault.clone());
+                        self.outlet.send(LinkEvent::Absent { at_ns, fault, present });
                     }
                     self.rest();
                 }
