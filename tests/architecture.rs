@@ -23,7 +23,7 @@ const LAYERS: [&str; 14] = [
 ];
 
 /// Crates that only some layers or workspace members may name, each with its owners.
-const OWNERS: [(&str, &[&str]); 16] = [
+const OWNERS: [(&str, &[&str]); 20] = [
     ("clap", &["src/main", "src/command"]),
     ("indicatif", &["src/command"]),
     ("tracing_subscriber", &["src/main"]),
@@ -35,11 +35,25 @@ const OWNERS: [(&str, &[&str]); 16] = [
     ("rand", &["src/inverse", "src/tank", "src/reference", "src/bench"]),
     ("rand_chacha", &["src/inverse", "src/tank", "src/reference", "src/bench"]),
     ("rand_distr", &["src/inverse", "src/tank", "src/reference", "src/bench"]),
-    ("toml", &["src/campaign", "src/tank"]),
+    (
+        "toml",
+        &[
+            "src/campaign",
+            "src/tank",
+            "devices/src/driver",
+            "devices/src/emulator",
+            "devices/src/profile",
+            "devices/src/setup",
+        ],
+    ),
     ("csv", &["src/report", "replay/src"]),
     ("mcap", &["replay/src"]),
     ("tokio", &[]),
-    ("serialport", &[]),
+    ("serialport", &["devices/src/port"]),
+    ("thread_priority", &["devices/src/realtime"]),
+    ("rustix", &["devices/src/emulator"]),
+    ("crc", &["devices/src/driver"]),
+    ("cobs", &["devices/src/driver"]),
 ];
 
 const LINES_PER_FILE: usize = 400;

@@ -2,9 +2,33 @@
 //!
 //! A recording is a device too: `replay::Player` implements [`Device`], so everything above reads
 //! a live instrument and last year's file through the same door.
+//!
+//! ```text
+//! port (thread, bytes, time stamps) -> driver (frames) -> instrument (SI, host time, quality)
+//! ```
 
+pub mod channel;
+pub mod clock;
 mod device;
+pub mod driver;
+pub mod emulator;
+mod error;
+mod hint;
+mod instrument;
+mod interpreter;
+pub mod port;
+pub mod probe;
+pub mod profile;
+mod quality;
+mod realtime;
 mod sample;
+pub mod setup;
+mod stamp;
+mod trouble;
 
 pub use device::{Device, DeviceError, Reading};
+pub use error::InstrumentError;
+pub use instrument::Instrument;
+pub use interpreter::{InstrumentEvent, Interpreter, Measured};
+pub use quality::Quality;
 pub use sample::{Quantity, Sample};

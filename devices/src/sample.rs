@@ -1,7 +1,10 @@
 //! One measured value with its quantity, its time and its SI unit.
 
 /// What a channel measures; every [`Sample`] carries its value in this quantity's SI unit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "lowercase")]
 pub enum Quantity {
     /// Roll angle [rad], starboard down positive.
     Roll,

@@ -1,0 +1,45 @@
+//! What was received, lost, repeated, over range and damaged, per channel or link.
+
+use std::ops::{AddAssign, Sub};
+
+use serde::{Deserialize, Serialize};
+
+/// Counts of one channel; nothing that went wrong is left out.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counts {
+    /// Samples that were delivered.
+    pub received: u64,
+    /// Samples that are missing by the sequence number, by silence or by cycles not begun.
+    pub lost: u64,
+    /// Conversions that came again and were not delivered.
+    pub repeated: u64,
+    /// Delivered samples beyond the range of instrument or channel.
+    pub over_range: u64,
+    /// Frames that were no frame, or failed their check.
+    pub damaged: u64,
+}
+
+impl AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.received += other.received;
+        self.lost += other.lost;
+        self.repeated += other.repeated;
+        self.over_range += other.over_range;
+        self.damaged += other.damaged;
+    }
+}
+
+impl Sub for Counts {
+    type Output = Self;
+
+    /// What came since an earlier state of the same counts.
+    fn sub(self, earlier: Self) -> Self {
+        Self {
+            received: self.received - earlier.received,
+            lost: self.lost - earlier.lost,
+            repeated: self.repeated - earlier.repeated,
+            over_range: self.over_range - earlier.over_range,
+            damaged: self.damaged - earlier.damaged,
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Time as an argument: the host's clock, and the clocks inside the instruments seen from it.
+
+mod corridor;
+mod counter;
+mod envelope;
+mod paced;
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant, SystemTime};
+
+pub use counter::{Counter, CounterStep};
+pub use envelope::{ClockLine, Envelope};
+pub use paced::Paced;
+
+/// Nanoseconds in a second.
+pub(crate) const NS_PER_S: f64 = 1e9;
+
+/// A host clock that never steps back: `CLOCK_MONOTONIC`, or what a test gives.
+pub trait Clock: Send + Sync {
+    /// Time since the clock's own start [ns].
+    fn now_ns(&self) -> u64;
+
+    /// How long the thread has to sleep, so that `duration_ns` pass on this clock.
+    fn real(&self, duration_ns: u64) -> Duration;
+}
+
+/// The machine's monotonic clock, which may run faster than real time for a simulated tank.
+#[derive(Debug, Clone)]
+pub struct WallClock {
+    start: Instant,
+    start_unix_ns: u128,
+    speed: f64,
+}
+
+impl WallClock {
+    /// A clock at the speed of the world.
+    pub fn start() -> Self {
+        Self::start_at_speed(1.0)
+    }
+
+    /// A clock on which `speed` seconds pass in one second of the world.
+    ///
+    /// # Panics
+    /// When `speed` is not positive.
+    #[expect(clippy::disallowed_methods, reason = "the one place where time enters the program")]
+    pub fn start_at_speed(speed: f64) -> Self {
+        assert!(speed > 0.0, "a clock at speed {speed}");
+        let since_epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+        Self {
+            start: Instant::now(),
+            start_unix_ns: since_epoch.map_or(0, |passed| passed.as_nanos()),
+            speed,
+        }
+    }
+
+    /// Time zero of this clock since 1970 [ns]; never differenced, as NTP may step that clock.
+    pub fn start_unix_ns(&self) -> u128 {
+        self.start_unix_ns
+    }
+}
+
+impl Clock for WallClock {
+    fn now_ns(&self) -> u64 {
+        (self.start.elapsed().as_nanos() as f64 * self.speed) as u64
+    }
+
+    fn real(&self, duration_ns: u64) -> Duration {
+        Duration::from_nanos((duration_ns as f64 / self.speed) as u64)
+    }
+}
+
+/// A clock that stands where it was set.
+#[derive(Debug, Default)]
+pub struct GivenClock {
+    now_ns: AtomicU64,
+}
+
+impl GivenClock {
+    /// Sets the clock.
+    pub fn set_ns(&self, now_ns: u64) {
+        self.now_ns.store(now_ns, Ordering::Release);
+    }
+}
+
+impl Clock for GivenClock {
+    fn now_ns(&self) -> u64 {
+        self.now_ns.load(Ordering::Acquire)
+    }
+
+    fn real(&self, _duration_ns: u64) -> Duration {
+        Duration::from_millis(1)
+    }
+}

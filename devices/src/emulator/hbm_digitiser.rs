@@ -1,0 +1,151 @@
+//! HBM/HBK digitisers, alone or on a bus, in text or binary: AD104 operating manual.
+
+use super::line_pace::{Conversion, LinePace, send_due};
+use super::{Emulator, Faults, Signal};
+use crate::driver::{HbmAsciiSettings, HbmBinarySettings, HbmFormat, SettingsError, settings};
+
+const LIMIT: f64 = 8_388_608.0;
+/// Everyone on the bus listens, nobody answers.
+const EVERYONE: u8 = 98;
+
+struct HbmDigitisers {
+    /// Addresses; one digitiser without address when empty.
+    stations: Vec<u8>,
+    /// The binary output format; text when none.
+    format: Option<HbmFormat>,
+    pace: LinePace,
+    signal: Signal,
+    heard: Vec<u8>,
+    selected: Option<u8>,
+    streaming: bool,
+    /// What each holds since `S98;MSV?;`.
+    held: Vec<Option<f64>>,
+}
+
+fn new(
+    stations: Vec<u8>,
+    format: Option<HbmFormat>,
+    rate_hz: f64,
+    signal: Signal,
+) -> HbmDigitisers {
+    let held = vec![None; stations.len().max(1)];
+    let pace = LinePace::new(rate_hz);
+    HbmDigitisers {
+        stations,
+        format,
+        pace,
+        signal,
+        heard: Vec::new(),
+        selected: None,
+        streaming: false,
+        held,
+    }
+}
+
+pub(super) fn open_ascii(
+    table: &toml::Table,
+    rate_hz: f64,
+    signal: Signal,
+) -> Result<Box<dyn Emulator>, SettingsError> {
+    let settings: HbmAsciiSettings = settings(table)?;
+    Ok(Box::new(new(settings.stations, None, rate_hz, signal)))
+}
+
+pub(super) fn open_binary(
+    table: &toml::Table,
+    rate_hz: f64,
+    signal: Signal,
+) -> Result<Box<dyn Emulator>, SettingsError> {
+    let settings: HbmBinarySettings = settings(table)?;
+    let format = HbmFormat::new(settings.format, settings.checked)?;
+    Ok(Box::new(new(Vec::new(), Some(format), rate_hz, signal)))
+}
+
+impl HbmDigitisers {
+    fn measured(&self, tag: usize, host_s: f64, faults: &Faults) -> f64 {
+        if faults.saturated { -LIMIT } else { (self.signal)(tag, host_s).round() }
+    }
+
+    fn written(&self, raw: f64) -> Vec<u8> {
+        let raw = raw.clamp(-LIMIT, LIMIT - 1.0) as i32;
+        match self.format {
+            Some(format) => format.write(raw),
+            None => format!("{raw:+08}\r\n").into_bytes(),
+        }
+    }
+
+    /// What one command without its semicolon brings.
+    fn obey(&mut self, command: &str, now_s: f64, faults: &Faults, out: &mut Vec<u8>) {
+        let select = command.strip_prefix('S').and_then(|station| station.parse::<u8>().ok());
+        if let Some(station) = select {
+            self.selected = Some(station);
+            let tag = self.stations.iter().position(|known| *known == station);
+            let held = tag.and_then(|tag| self.held[tag].take());
+            out.extend(held.map(|raw| self.written(raw)).into_iter().flatten());
+            return;
+        }
+        let everyone = self.selected == Some(EVERYONE);
+        let tag = match self.selected {
+            Some(station) if !self.stations.is_empty() => {
+                self.stations.iter().position(|known| *known == station)
+            }
+            _ => self.stations.is_empty().then_some(0),
+        };
+        if everyone && command == "MSV?" {
+            for tag in 0..self.held.len() {
+                self.held[tag] = Some(self.measured(tag, now_s, faults));
+            }
+            return;
+        }
+        let Some(tag) = tag else { return };
+        match command {
+            "STP" => self.streaming = false,
+            "MSV?0" => {
+                self.streaming = true;
+                self.pace.restart(now_s);
+            }
+            "MSV?" => {
+                let newest = self.pace.newest(now_s, faults);
+                out.extend(self.written(self.measured(tag, newest.host_s, faults)));
+            }
+            "IDN?" => out.extend(b"HBM,AD104C,170123,P54\r\n"),
+            _ if ["ASF", "COF", "ICR", "CSM", "NOV", "SPW"].contains(&&command[..3]) => {
+                out.extend(b"0\r\n");
+            }
+            _ => out.extend(b"?\r\n"),
+        }
+    }
+}
+
+impl Emulator for HbmDigitisers {
+    fn receive(&mut self, bytes: &[u8], now_s: f64, faults: &mut Faults, out: &mut Vec<u8>) {
+        self.heard.extend_from_slice(bytes);
+        while let Some(end) = self.heard.iter().position(|byte| *byte == b';' || *byte == b'\n') {
+            let command: Vec<u8> = self.heard.drain(..=end).collect();
+            let command = String::from_utf8_lossy(&command[..end]).trim().to_ascii_uppercase();
+            // A lone terminator clears the input, and what is no command at all is refused.
+            match command.get(..3) {
+                Some(_) if command.is_ascii() => self.obey(&command, now_s, faults, out),
+                _ if command.is_empty() => {}
+                _ => out.extend(b"?\r\n"),
+            }
+        }
+        let excess = self.heard.len().saturating_sub(256);
+        self.heard.drain(..excess);
+    }
+
+    fn tick(&mut self, now_s: f64, faults: &mut Faults, out: &mut Vec<u8>) {
+        if self.streaming {
+            let due = self.pace.due(now_s, faults);
+            send_due(due, faults, out, |conversion: &Conversion, faults| {
+                self.written(self.measured(0, conversion.host_s, faults))
+            });
+        }
+    }
+
+    fn restart(&mut self, now_s: f64) {
+        self.streaming = false;
+        self.selected = None;
+        self.pace.restart(now_s);
+    }
+}

@@ -1,0 +1,113 @@
+//! Transmitters on one line that answer Modbus RTU functions 3 and 4.
+
+use super::line_pace::LinePace;
+use super::{Emulator, Faults, Signal};
+use crate::driver::{ModbusSettings, NumberType, SettingsError, modbus_crc, settings};
+
+const REQUEST_BYTES: usize = 8;
+const ILLEGAL_ADDRESS: u8 = 2;
+
+struct ModbusTransmitters {
+    settings: ModbusSettings,
+    pace: LinePace,
+    signal: Signal,
+    heard: Vec<u8>,
+}
+
+pub(super) fn open(
+    table: &toml::Table,
+    rate_hz: f64,
+    signal: Signal,
+) -> Result<Box<dyn Emulator>, SettingsError> {
+    let settings: ModbusSettings = settings(table)?;
+    let pace = LinePace::new(rate_hz);
+    Ok(Box::new(ModbusTransmitters { settings, pace, signal, heard: Vec::new() }))
+}
+
+impl ModbusTransmitters {
+    /// The registers of a field, as bytes on the wire.
+    fn registers(&self, number: usize, host_s: f64, faults: &Faults) -> Vec<u8> {
+        let field = &self.settings.fields[number];
+        let raw = (self.signal)(number, host_s);
+        let long = |bytes: [u8; 4]| match field.order {
+            Some(order) => order.turn(bytes).to_vec(),
+            None => bytes.to_vec(),
+        };
+        match field.number {
+            NumberType::Int16 => {
+                (faults.limited(raw, 32_767.0).round() as i16).to_be_bytes().to_vec()
+            }
+            NumberType::Uint16 => {
+                (faults.limited(raw, 65_535.0).round() as u16).to_be_bytes().to_vec()
+            }
+            NumberType::Int32 => {
+                long((faults.limited(raw, 2_147_483_647.0).round() as i32).to_be_bytes())
+            }
+            NumberType::Uint32 => {
+                long((faults.limited(raw, 4_294_967_295.0).round() as u32).to_be_bytes())
+            }
+            NumberType::Float32 => {
+                let raw = if faults.saturated { f64::NAN } else { raw };
+                long((raw as f32).to_be_bytes())
+            }
+        }
+    }
+
+    fn answer(&mut self, request: &[u8], now_s: f64, faults: &Faults) -> Option<Vec<u8>> {
+        let (station, function) = (request[0], request[1]);
+        if !self.settings.fields.iter().any(|field| field.station == station) {
+            return None;
+        }
+        let start = u16::from_be_bytes([request[2], request[3]]);
+        let n_registers = u16::from_be_bytes([request[4], request[5]]);
+        let host_s = self.pace.newest(now_s, faults).host_s;
+        let mut data = vec![0; 2 * usize::from(n_registers)];
+        let mut any = false;
+        for (number, field) in self.settings.fields.iter().enumerate() {
+            if (field.station, field.function) != (station, function) || field.address < start {
+                continue;
+            }
+            let at = 2 * usize::from(field.address - start);
+            let bytes = self.registers(number, host_s, faults);
+            if let Some(place) = data.get_mut(at..at + bytes.len()) {
+                place.copy_from_slice(&bytes);
+                any = true;
+            }
+        }
+        let mut reply = if any && n_registers <= 125 {
+            let mut reply = vec![station, function, data.len() as u8];
+            reply.extend(data);
+            reply
+        } else {
+            vec![station, function | 0x80, ILLEGAL_ADDRESS]
+        };
+        reply.extend(modbus_crc(&reply));
+        Some(reply)
+    }
+}
+
+impl Emulator for ModbusTransmitters {
+    fn receive(&mut self, bytes: &[u8], now_s: f64, faults: &mut Faults, out: &mut Vec<u8>) {
+        self.heard.extend_from_slice(bytes);
+        while let Some(frame) = self.heard.first_chunk::<REQUEST_BYTES>().copied() {
+            let (body, sum) = frame.split_at(REQUEST_BYTES - 2);
+            if *sum != modbus_crc(body) {
+                self.heard.remove(0);
+                continue;
+            }
+            self.heard.drain(..REQUEST_BYTES);
+            let answer = self.answer(body, now_s, faults);
+            if faults.n_skips > 0 {
+                faults.n_skips -= 1;
+            } else {
+                out.extend(answer.into_iter().flatten());
+            }
+        }
+    }
+
+    fn tick(&mut self, _now_s: f64, _faults: &mut Faults, _out: &mut Vec<u8>) {}
+
+    fn restart(&mut self, now_s: f64) {
+        self.pace.restart(now_s);
+    }
+}

@@ -1,0 +1,69 @@
+//! A board that sends lines of text by a pattern, or answers with them.
+
+use super::line_pace::{Conversion, LinePace, send_due};
+use super::{Emulator, Faults, Signal};
+use crate::driver::{Pattern, PatternValues, SettingsError, TextLineSettings, settings};
+
+struct TextBoard {
+    settings: TextLineSettings,
+    pattern: Pattern,
+    pace: LinePace,
+    signal: Signal,
+    heard: Vec<u8>,
+}
+
+pub(super) fn open(
+    table: &toml::Table,
+    rate_hz: f64,
+    signal: Signal,
+) -> Result<Box<dyn Emulator>, SettingsError> {
+    let settings: TextLineSettings = settings(table)?;
+    let pattern = Pattern::new(&settings.pattern, settings.decimal_comma).map_err(SettingsError)?;
+    let pace = LinePace::new(rate_hz);
+    Ok(Box::new(TextBoard { settings, pattern, pace, signal, heard: Vec::new() }))
+}
+
+impl TextBoard {
+    fn line(&self, conversion: &Conversion, faults: &Faults) -> Vec<u8> {
+        let field = |field| {
+            let raw = (self.signal)(field, conversion.host_s);
+            (field, faults.limited(raw, 8_388_607.0))
+        };
+        let turn = |value: u64, bits: u32| {
+            if bits < 64 { value % (1 << bits) } else { value }
+        };
+        let ticks = (conversion.device_s * self.pattern.ticks_per_s().unwrap_or(0.0)).round();
+        let mut line = self.pattern.write(&PatternValues {
+            fields: (0..self.pattern.n_fields()).map(field).collect(),
+            sequence: Some(turn(conversion.index, self.settings.sequence_bits)),
+            ticks: Some(turn(ticks as u64, self.settings.time_bits)),
+        });
+        line.extend_from_slice(self.settings.terminators.as_bytes());
+        line
+    }
+}
+
+impl Emulator for TextBoard {
+    fn receive(&mut self, bytes: &[u8], now_s: f64, faults: &mut Faults, out: &mut Vec<u8>) {
+        let Some(request) = self.settings.request.clone() else { return };
+        self.heard.extend_from_slice(bytes);
+        if self.heard.ends_with(request.as_bytes()) {
+            self.heard.clear();
+            let newest = self.pace.newest(now_s, faults);
+            out.extend(self.line(&newest, faults));
+        }
+        let excess = self.heard.len().saturating_sub(256);
+        self.heard.drain(..excess);
+    }
+
+    fn tick(&mut self, now_s: f64, faults: &mut Faults, out: &mut Vec<u8>) {
+        if self.settings.request.is_none() {
+            let due = self.pace.due(now_s, faults);
+            send_due(due, faults, out, |conversion, faults| self.line(conversion, faults));
+        }
+    }
+
+    fn restart(&mut self, now_s: f64) {
+        self.pace.restart(now_s);
+    }
+}

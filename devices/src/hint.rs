@@ -1,0 +1,81 @@
+//! What to do about each [`InstrumentError`], as one sentence for the `hint:` line.
+
+use crate::error::InstrumentError;
+use crate::port::PortFault;
+
+impl InstrumentError {
+    /// What the user can do about it, where there is more to say than the message does.
+    pub fn hint(&self) -> Option<String> {
+        Some(match self {
+            Self::UnknownProfile { known, .. } => format!("known are {}", known.join(", ")),
+            Self::UnknownDriver { .. } => {
+                let names: Vec<&str> =
+                    crate::driver::DRIVERS.iter().map(|driver| driver.name).collect();
+                format!("known are {}", names.join(", "))
+            }
+            Self::Profile { .. } => "compare it with a profile in devices/profiles".to_owned(),
+            Self::Settings { driver, .. } => {
+                format!("compare [device.settings] with a profile of driver \"{driver}\"")
+            }
+            Self::NoChannels { .. } => {
+                "add [[device.channel]] with quantity = \"roll\" and field = 0".to_owned()
+            }
+            Self::NoSuchField { .. } => "field counts from 0".to_owned(),
+            Self::NameTwice { .. } => "give each [[device]] a name of its own".to_owned(),
+            Self::PortTwice { .. } => {
+                "instruments on one bus are one [[device]] with several stations".to_owned()
+            }
+            Self::AddressTwice { .. } => {
+                "set another address in one of them, alone on the bus, by its maker's program"
+                    .to_owned()
+            }
+            Self::ChannelTwice { quantity, .. } => {
+                format!("keep one channel with quantity = \"{}\"", quantity.name())
+            }
+            Self::Port { fault, present, .. } => return port_hint(fault, present),
+            Self::Garbage { .. } => "check baud and parity against the instrument's own settings, \
+                and that the profile is the right one"
+                .to_owned(),
+            Self::Silent { request: Some(_), .. } => {
+                "check power, address, baud and that A and B of RS-485 are not exchanged".to_owned()
+            }
+            Self::Silent { .. } => {
+                "check power and cable, and that the instrument is set to send by itself".to_owned()
+            }
+            Self::WrongDevice { .. } => {
+                "another instrument hangs on this port: exchange the cables or the ports".to_owned()
+            }
+            Self::Refused { .. } => {
+                "compare the settings with the instrument's own; a password may protect it"
+                    .to_owned()
+            }
+            Self::Unasked { .. } => {
+                "two instruments may have one address: switch one off and look again".to_owned()
+            }
+            Self::Number { .. } | Self::Calibration { .. } => return None,
+        })
+    }
+}
+
+fn port_hint(fault: &PortFault, present: &[std::path::PathBuf]) -> Option<String> {
+    Some(match fault {
+        PortFault::Missing if present.is_empty() => {
+            "no serial port is there; plug the adapter in".to_owned()
+        }
+        PortFault::Missing => {
+            let ports: Vec<String> =
+                present.iter().map(|port| port.display().to_string()).collect();
+            format!("there are {}", ports.join(", "))
+        }
+        PortFault::Busy => "close the other program; `fuser PORT` names it".to_owned(),
+        PortFault::Forbidden => {
+            "add the user to group dialout and log in again: `sudo usermod -aG dialout $USER`"
+                .to_owned()
+        }
+        PortFault::NotSerial => "give a port such as /dev/serial/by-id/...".to_owned(),
+        PortFault::Refused(_) => {
+            "set the instrument to 8N1, or use an adapter that takes this setting".to_owned()
+        }
+        PortFault::Other(_) => return None,
+    })
+}

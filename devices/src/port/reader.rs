@@ -1,0 +1,296 @@
+//! One thread per port: opens, stamps, converses, notices loss, and comes back.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use super::{Arrival, Line, Port, PortFault, found_ports};
+use crate::clock::Clock;
+use crate::driver::{Decoded, Session};
+use crate::realtime::become_realtime;
+
+/// Longest wait for bytes before the port itself is looked at again; a hang-up ends it at once.
+const IDLE_MAX_MS: u64 = 25;
+/// From one attempt to open to the next.
+const RETRY_MS: u64 = 200;
+/// Without a byte for so long, the silence is told [ns].
+const SILENCE_NS: u64 = 1_000_000_000;
+/// Events that may wait; at 2 kHz more than five seconds of them.
+const QUEUE_EVENTS: usize = 16_384;
+const READ_BYTES: usize = 4096;
+
+/// What happened on a link; `at_ns` is the host's clock.
+///
+/// Opened, sent, received, waited and lost are the raw record of a link: with their times and bytes
+/// alone a fresh session decodes the same again.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LinkEvent {
+    /// The port is open.
+    Opened {
+        /// When.
+        at_ns: u64,
+    },
+    /// Bytes were sent.
+    Sent {
+        /// Just before they were written.
+        at_ns: u64,
+        /// The bytes.
+        bytes: Vec<u8>,
+        /// What was given up before.
+        decoded: Vec<Decoded>,
+    },
+    /// Bytes were received.
+    Received {
+        /// Right after the read, before any decoding.
+        at_ns: u64,
+        /// The bytes.
+        bytes: Vec<u8>,
+        /// What they said.
+        decoded: Vec<Decoded>,
+    },
+    /// Waiting ended without bytes.
+    Waited {
+        /// When.
+        at_ns: u64,
+        /// What was given up.
+        decoded: Vec<Decoded>,
+    },
+    /// The link is open, but not a byte came for a second; told once.
+    Silence {
+        /// When.
+        at_ns: u64,
+    },
+    /// The link is gone.
+    Lost {
+        /// When it was noticed.
+        at_ns: u64,
+        /// What was seen.
+        seen: String,
+    },
+    /// The port cannot be opened; told again only when the reason changes.
+    Absent {
+        /// When.
+        at_ns: u64,
+        /// Why.
+        fault: PortFault,
+        /// The ports that are there instead.
+        present: Vec<PathBuf>,
+    },
+    /// Events were dropped, because nobody took them.
+    Overflow {
+        /// How many.
+        n_events: u64,
+    },
+}
+
+/// Where and how a link is made.
+#[derive(Debug, Clone)]
+pub struct LinkOptions {
+    /// Stable name of the port.
+    pub path: PathBuf,
+    /// Its settings.
+    pub line: Line,
+    /// `SCHED_FIFO` for the thread, when the system allows it.
+    pub realtime: bool,
+}
+
+/// The thread of one port, and the queue of what happened on it.
+pub struct LinkReader {
+    events: Receiver<LinkEvent>,
+    stop: Arc<AtomicBool>,
+    realtime: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl LinkReader {
+    /// Starts the thread; it opens the port when that is there.
+    ///
+    /// # Errors
+    /// The system's error when it has no thread to give.
+    pub fn start(
+        options: LinkOptions,
+        session: Session,
+        clock: Arc<dyn Clock>,
+    ) -> std::io::Result<Self> {
+        let (sender, events) = sync_channel(QUEUE_EVENTS);
+        let stop = Arc::new(AtomicBool::new(false));
+        let realtime = Arc::new(AtomicBool::new(false));
+        let mut link = Link {
+            options,
+            session,
+            clock,
+            outlet: Outlet { sender, n_dropped: 0 },
+            stop: Arc::clone(&stop),
+        };
+        let is_realtime = Arc::clone(&realtime);
+        let thread = thread::Builder::new().name("port".to_owned()).spawn(move || {
+            if link.options.realtime {
+                is_realtime.store(become_realtime(), Ordering::Release);
+            }
+            link.run();
+        })?;
+        Ok(Self { events, stop, realtime, thread: Some(thread) })
+    }
+
+    /// The next event, waited for at most so long.
+    pub fn next(&self, wait: Duration) -> Option<LinkEvent> {
+        self.events.recv_timeout(wait).ok()
+    }
+
+    /// Whether the thread runs under `SCHED_FIFO`.
+    pub fn is_realtime(&self) -> bool {
+        self.realtime.load(Ordering::Acquire)
+    }
+}
+
+impl Drop for LinkReader {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Release);
+        if let Some(thread) = self.thread.take() {
+            // A panic of the thread was already told by its own message.
+            drop(thread.join());
+        }
+    }
+}
+
+/// The sending end of the queue, which never blocks the reader.
+struct Outlet {
+    sender: SyncSender<LinkEvent>,
+    n_dropped: u64,
+}
+
+impl Outlet {
+    fn send(&mut self, event: LinkEvent) {
+        if self.n_dropped > 0 {
+            let overflow = LinkEvent::Overflow { n_events: self.n_dropped };
+            if self.sender.try_send(overflow).is_err() {
+                self.n_dropped += 1;
+                return;
+            }
+            self.n_dropped = 0;
+        }
+        if let Err(TrySendError::Full(_)) = self.sender.try_send(event) {
+            self.n_dropped += 1;
+        }
+    }
+}
+
+struct Link {
+    options: LinkOptions,
+    session: Session,
+    clock: Arc<dyn Clock>,
+    outlet: Outlet,
+    stop: Arc<AtomicBool>,
+}
+
+impl Link {
+    fn run(&mut self) {
+        let mut told: Option<PortFault> = None;
+        while !self.stopped() {
+            match Port::open(&self.options.path, self.options.line) {
+                Ok(port) => {
+                    told = None;
+                    self.talk(port);
+                }
+                Err(fault) => {
+                    if told.as_ref() != Some(&fault) {
+                        let at_ns = self.clock.now_ns();
+                        let present = found_ports().into_iter().map(|port| port.path).collect();
+                        told = Some(fault.clone());
+                        self.outlet.send(LinkEvent::Absent { at_ns, fault, present });
+                    }
+                    self.rest();
+                }
+            }
+        }
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Acquire)
+    }
+
+    /// Waits before the next attempt, but not for a stop.
+    fn rest(&self) {
+        for _ in 0..RETRY_MS / IDLE_MAX_MS {
+            if self.stopped() {
+                return;
+            }
+            thread::sleep(Duration::from_millis(IDLE_MAX_MS));
+        }
+    }
+
+    /// Converses until the link is lost or stopped.
+    fn talk(&mut self, mut port: Port) {
+        let device = fs::canonicalize(&self.options.path).ok();
+        let mut at_ns = self.clock.now_ns();
+        self.session.open(at_ns);
+        self.outlet.send(LinkEvent::Opened { at_ns });
+        let mut heard_ns = Some(at_ns);
+        let mut buffer = vec![0; READ_BYTES];
+        while !self.stopped() {
+            if let Err(seen) = self.send_due(&mut port) {
+                return self.lost(seen);
+            }
+            let wait = self.wait();
+            match port.read(&mut buffer, wait) {
+                Arrival::Bytes(n_bytes) => {
+                    at_ns = self.clock.now_ns();
+                    heard_ns = Some(at_ns);
+                    let bytes = buffer[..n_bytes].to_vec();
+                    let mut decoded = Vec::new();
+                    self.session.receive(&bytes, at_ns, &mut decoded);
+                    self.outlet.send(LinkEvent::Received { at_ns, bytes, decoded });
+                }
+                Arrival::Lost(seen) => return self.lost(seen),
+                Arrival::Idle => {
+                    at_ns = self.clock.now_ns();
+                    if wait.as_millis() >= u128::from(IDLE_MAX_MS)
+                        && device != fs::canonicalize(&self.options.path).ok()
+                    {
+                        return self.lost(seen_at(&self.options.path));
+                    }
+                    if heard_ns.is_some_and(|heard_ns| at_ns - heard_ns > SILENCE_NS) {
+                        heard_ns = None;
+                        self.outlet.send(LinkEvent::Silence { at_ns });
+                    }
+                }
+            }
+        }
+    }
+
+    /// Sends what is due and tells what was given up.
+    fn send_due(&mut self, port: &mut Port) -> Result<(), String> {
+        let at_ns = self.clock.now_ns();
+        let (mut bytes, mut decoded) = (Vec::new(), Vec::new());
+        self.session.poll(at_ns, &mut bytes, &mut decoded);
+        if bytes.is_empty() {
+            if !decoded.is_empty() {
+                self.outlet.send(LinkEvent::Waited { at_ns, decoded });
+            }
+            return Ok(());
+        }
+        let written = port.write(&bytes);
+        self.outlet.send(LinkEvent::Sent { at_ns, bytes, decoded });
+        written
+    }
+
+    fn wait(&self) -> Duration {
+        let longest = Duration::from_millis(IDLE_MAX_MS);
+        let Some(wake_ns) = self.session.wake_ns() else { return longest };
+        self.clock.real(wake_ns.saturating_sub(self.clock.now_ns())).min(longest)
+    }
+
+    fn lost(&mut self, seen: String) {
+        let at_ns = self.clock.now_ns();
+        self.outlet.send(LinkEvent::Lost { at_ns, seen });
+    }
+}
+
+fn seen_at(path: &Path) -> String {
+    let now = if path.exists() { "points to another device" } else { "has vanished" };
+    format!("{} {now}", path.display())
+}

@@ -1,0 +1,111 @@
+//! Asks one instrument who it is and what it reads: `rolltank devices` and `rolltank check`.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::channel::Counts;
+use crate::clock::Clock;
+use crate::error::InstrumentError;
+use crate::instrument::Instrument;
+use crate::interpreter::{InstrumentEvent, Measured};
+use crate::setup::DeviceConfig;
+use crate::{Quality, Quantity};
+
+/// What an instrument brought while it was listened to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProbeReport {
+    /// Whether its port could be opened.
+    pub linked: bool,
+    /// What it says it is, where it can.
+    pub identity: Option<String>,
+    /// Each channel's last sample, rate and counts.
+    pub channels: Vec<ChannelReport>,
+    /// What a person must mend.
+    pub troubles: Vec<InstrumentError>,
+}
+
+/// One channel of a report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChannelReport {
+    /// What it measures.
+    pub quantity: Quantity,
+    /// Its last sample.
+    pub last: Option<Measured>,
+    /// Samples a second, from two of them on.
+    pub rate_hz: Option<f64>,
+    /// Every flag that any of its samples carried.
+    pub quality: Quality,
+    /// What was received, lost, repeated, over range, damaged.
+    pub counts: Counts,
+}
+
+/// Listens to an instrument for `duration_ns`, or until it has trouble that ends all hope of more.
+///
+/// # Errors
+/// [`InstrumentError`] when its settings are wrong.
+pub fn probe(
+    config: &DeviceConfig,
+    duration_ns: u64,
+    clock: &Arc<dyn Clock>,
+) -> Result<ProbeReport, InstrumentError> {
+    let mut instrument = Instrument::start(config, Arc::clone(clock))?;
+    let mut report =
+        ProbeReport { linked: false, identity: None, channels: Vec::new(), troubles: Vec::new() };
+    let mut heard: Vec<(Quantity, Heard)> =
+        config.channels.iter().map(|channel| (channel.quantity, Heard::default())).collect();
+    let until_ns = clock.now_ns().saturating_add(duration_ns);
+    let mut events = Vec::new();
+    while clock.now_ns() < until_ns {
+        instrument.next(Duration::from_millis(20), &mut events);
+        for event in events.drain(..) {
+            match event {
+                InstrumentEvent::Linked { .. } => report.linked = true,
+                InstrumentEvent::Identity(text) => report.identity = Some(text),
+                InstrumentEvent::Trouble(trouble) => report.troubles.push(trouble),
+                InstrumentEvent::Sample(measured) => {
+                    let of = measured.sample.quantity;
+                    let heard = heard.iter_mut().filter(|(quantity, _)| *quantity == of);
+                    heard.for_each(|(_, heard)| heard.push(measured));
+                }
+                _ => {}
+            }
+        }
+        // A port that cannot be opened brings nothing however long one waits.
+        if !report.linked && !report.troubles.is_empty() {
+            break;
+        }
+    }
+    let counts = instrument.counts();
+    report.channels = heard
+        .into_iter()
+        .zip(counts)
+        .map(|((quantity, heard), (_, counts))| heard.report(quantity, counts))
+        .collect();
+    Ok(report)
+}
+
+#[derive(Default)]
+struct Heard {
+    first_s: Option<f64>,
+    last: Option<Measured>,
+    n_samples: u64,
+    quality: Quality,
+}
+
+impl Heard {
+    fn push(&mut self, measured: Measured) {
+        self.first_s.get_or_insert(measured.sample.time_s);
+        self.last = Some(measured);
+        self.n_samples += 1;
+        self.quality = self.quality.with(measured.quality);
+    }
+
+    fn report(self, quantity: Quantity, counts: Counts) -> ChannelReport {
+        let span_s =
+            self.last.zip(self.first_s).map(|(last, first_s)| last.sample.time_s - first_s);
+        let rate_hz = span_s
+            .filter(|span_s| *span_s > 0.0)
+            .map(|span_s| self.n_samples.saturating_sub(1) as f64 / span_s);
+        ChannelReport { quantity, last: self.last, rate_hz, quality: self.quality, counts }
+    }
+}

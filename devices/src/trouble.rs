@@ -1,0 +1,172 @@
+//! What a person must mend, recognised in the stream and told once until it changes.
+
+use std::path::PathBuf;
+
+use crate::driver::{Decoded, shown};
+use crate::error::InstrumentError;
+use crate::setup::DeviceConfig;
+
+/// Bytes without one good frame before the line's settings are doubted.
+const GARBAGE_BYTES: u64 = 64;
+/// And for so long [ns], since an instrument may be in the middle of its boot message.
+const GARBAGE_NS: u64 = 1_000_000_000;
+/// Requests in a row without an answer, before silence is told.
+const SILENT_REQUESTS: u32 = 5;
+/// Weight of answers that nobody asked for, before they are told.
+const UNASKED_MAX: u32 = 6;
+/// Weight of one of them; every answer that was asked for takes one off.
+const UNASKED_WEIGHT: u32 = 2;
+
+/// Watches one link.
+pub(crate) struct Troubles {
+    device: String,
+    port: PathBuf,
+    line: String,
+    identity: Option<String>,
+    opened_ns: u64,
+    n_bytes: u64,
+    n_frames: u64,
+    seen: String,
+    /// Requests in a row that did not bring a field, by field.
+    silent: Vec<u32>,
+    /// The last request without an answer.
+    request: Option<String>,
+    unasked: u32,
+    /// Certain, and not yet told.
+    found: Vec<InstrumentError>,
+    /// Told and not yet over.
+    told: Vec<std::mem::Discriminant<InstrumentError>>,
+    silence_told: bool,
+}
+
+impl Troubles {
+    pub(crate) fn new(config: &DeviceConfig, n_fields: usize) -> Self {
+        Self {
+            device: config.name.clone(),
+            port: config.port.clone(),
+            line: config.line.name(),
+            identity: config.identity.clone(),
+            opened_ns: 0,
+            n_bytes: 0,
+            n_frames: 0,
+            seen: String::new(),
+            silent: vec![0; n_fields],
+            request: None,
+            unasked: 0,
+            found: Vec::new(),
+            told: Vec::new(),
+            silence_told: false,
+        }
+    }
+
+    pub(crate) fn opened(&mut self, at_ns: u64) {
+        self.opened_ns = at_ns;
+        self.n_bytes = 0;
+        self.n_frames = 0;
+        self.silent.fill(0);
+        self.request = None;
+        self.unasked = 0;
+        self.found.clear();
+        self.told.clear();
+        self.silence_told = false;
+    }
+
+    pub(crate) fn received(&mut self, bytes: &[u8]) {
+        self.n_bytes += bytes.len() as u64;
+        if self.n_frames == 0 {
+            self.seen = shown(bytes);
+        }
+    }
+
+    pub(crate) fn decoded(&mut self, what: &Decoded) {
+        let (device, port) = (self.device.clone(), self.port.clone());
+        match what {
+            Decoded::Values { values, .. } => {
+                self.n_frames += 1;
+                self.unasked = self.unasked.saturating_sub(1);
+                for value in values {
+                    if let Some(silent) = self.silent.get_mut(value.field) {
+                        *silent = 0;
+                    }
+                }
+                // The next silence is another one.
+                self.silence_told &= self.silent.iter().any(|silent| *silent > 0);
+            }
+            Decoded::Identity(seen) => {
+                self.n_frames += 1;
+                let expected = self.identity.clone();
+                if let Some(expected) = expected.filter(|expected| !seen.contains(expected)) {
+                    let seen = seen.clone();
+                    self.once(InstrumentError::WrongDevice { device, port, expected, seen });
+                }
+            }
+            Decoded::Silent { request, fields, .. } => self.no_answer(request, fields),
+            Decoded::Unasked { seen } => {
+                self.unasked += UNASKED_WEIGHT;
+                if self.unasked >= UNASKED_MAX {
+                    self.unasked = 0;
+                    let seen = seen.clone();
+                    self.once(InstrumentError::Unasked { device, port, seen });
+                }
+            }
+            Decoded::Refused { request, reply } => {
+                self.n_frames += 1;
+                let (request, reply) = (request.clone(), reply.clone());
+                self.once(InstrumentError::Refused { device, port, request, reply });
+            }
+            Decoded::Damaged { .. } | Decoded::Missed { .. } => {}
+        }
+    }
+
+    /// One of several stations may be silent while the others talk.
+    fn no_answer(&mut self, request: &str, fields: &[usize]) {
+        self.request = Some(request.to_owned());
+        let mut longest = 0;
+        for field in fields {
+            if let Some(silent) = self.silent.get_mut(*field) {
+                *silent += 1;
+                longest = longest.max(*silent);
+            }
+        }
+        if longest >= SILENT_REQUESTS {
+            self.silence();
+        }
+    }
+
+    /// Not a byte came for a second, or not an answer to several requests.
+    pub(crate) fn silence(&mut self) {
+        // Bytes that make no frame are garbage, which is told with more to go by.
+        let garbage = self.n_bytes >= GARBAGE_BYTES && self.n_frames == 0;
+        if self.silence_told || garbage {
+            return;
+        }
+        self.silence_told = true;
+        let (device, port) = (self.device.clone(), self.port.clone());
+        self.found.push(InstrumentError::Silent { device, port, request: self.request.clone() });
+    }
+
+    /// The troubles that are certain by now and were not told before.
+    pub(crate) fn take(&mut self, now_ns: u64) -> Vec<InstrumentError> {
+        let garbage = self.n_frames == 0
+            && self.n_bytes >= GARBAGE_BYTES
+            && now_ns.saturating_sub(self.opened_ns) >= GARBAGE_NS;
+        if garbage {
+            self.once(InstrumentError::Garbage {
+                device: self.device.clone(),
+                port: self.port.clone(),
+                line: self.line.clone(),
+                n_bytes: self.n_bytes,
+                seen: self.seen.clone(),
+            });
+        }
+        std::mem::take(&mut self.found)
+    }
+
+    fn once(&mut self, error: InstrumentError) {
+        let kind = std::mem::discriminant(&error);
+        if !self.told.contains(&kind) {
+            self.told.push(kind);
+            self.found.push(error);
+        }
+    }
+}

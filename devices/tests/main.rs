@@ -1,0 +1,13 @@
+//! Stories of instruments: what their lines carry, and what comes of it.
+
+mod a_cable_is_pulled_and_put_back;
+mod a_replay_gives_the_live_samples_to_the_bit;
+mod a_wrong_setup_is_told_with_its_remedy;
+mod any_bytes_are_survived;
+mod bench;
+mod clocks_are_known_within_their_bound;
+mod every_driver_reads_its_instrument;
+mod hours_of_samples_are_read_without_a_loss;
+mod pymodbus_answers_our_requests;
+mod the_reference_sketch_is_read;
+mod wire;
