@@ -8,7 +8,7 @@ use devices::driver::{Decoded, Session};
 use crate::wire::session;
 
 /// As much of an Arduino as the sketch needs; its serial port is standard output.
-const ARDUINO_H: &str = r#"
+const ARDUINO_H: &str = r"
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -25,7 +25,7 @@ static struct {
   int read() { asked = 1; return 0; }
   void write(const uint8_t *bytes, uint8_t n) { fwrite(bytes, 1, n, stdout); }
 } Serial;
-"#;
+";
 
 const MAIN: &str = r#"
 #include "Arduino.h"

@@ -1,8 +1,8 @@
 //! MANTRABUS-II: the binary protocol of Mantracourt's digitisers.
 //!
 //! DSC user manual pp. 53-54. Every data byte travels as two nibbles, and `FE` is sent by the host
-//! alone. The last data nibble that the host writes carries bit 7, answers carry no such mark, and a
-//! wrong check sum is answered by silence.
+//! alone. The last data nibble that the host writes carries bit 7, answers carry no such mark, and
+//! a wrong check sum is answered by silence.
 
 use serde::Deserialize;
 

@@ -1,8 +1,8 @@
 //! Instruments that are not there: each protocol's other end, on real pseudo-terminals.
 //!
 //! Written from the manuals' frames, with the same `[settings]` as the driver, one file each and
-//! one line in [`EMULATORS`]. Faults come on command. The signals come from outside, so that a test can
-//! send a number and a simulated tank a roll.
+//! one line in [`EMULATORS`]. Faults come on command. The signals come from outside, so that a test
+//! can send a number and a simulated tank a roll.
 
 mod cobs_board;
 mod dcon_module;
