@@ -5,7 +5,7 @@ use super::term::{Base, Term};
 
 /// Runge-Kutta steps a period: with the fifth-degree course between, the phase of a roll errs by
 /// less than 1e-5 a period, which the natural frequency absorbs.
-const STEPS_PER_PERIOD: f64 = 64.0;
+const STEPS_PER_PERIOD: f64 = 48.0;
 
 /// Roll, rate and acceleration at equal steps.
 #[derive(Debug, Clone, Default)]
@@ -45,7 +45,6 @@ impl History {
 
 /// Most states: roll, rate, and those of up to six effects that remember.
 const MOST_STATES: usize = 2 + 6 * MOST_LAGS;
-type State = [f64; MOST_STATES];
 
 /// The equation of one decay.
 struct Equation<'a> {
@@ -68,17 +67,17 @@ impl Equation<'_> {
         }
     }
 
-    fn slope(&self, time_s: f64, state: &State, history: &History) -> State {
+    fn slope<const N: usize>(&self, time_s: f64, state: &[f64; N], history: &History) -> [f64; N] {
         let instant = self.instant(time_s, state[0], state[1], Past::Free(history));
         let mut moment = instant.acceleration_rad_per_s2;
         let mut inertia = 1.0;
-        let mut slope = [0.0; MOST_STATES];
+        let mut slope = [0.0; N];
         let mut next = 2;
         for Term { effect, values } in self.terms {
             match effect.acts {
                 Acts::Moment(law) => moment += law(&instant, values),
                 Acts::Inertia(law) => inertia += law(&instant, values),
-                Acts::Lagging(lag) if next + lag.n_states <= MOST_STATES => {
+                Acts::Lagging(lag) if next + lag.n_states <= N => {
                     let own = &state[next..next + lag.n_states];
                     moment += (lag.moment)(&instant, values, own);
                     let slopes = (lag.slope)(&instant, values, own);
@@ -91,6 +90,36 @@ impl Equation<'_> {
         slope[0] = state[1];
         slope[1] = moment / inertia.max(0.1);
         slope
+    }
+
+    /// Runge-Kutta of the fourth order with `N` states, from a start to at least `last_s` [s].
+    fn history<const N: usize>(&self, start: (f64, f64), last_s: f64) -> History {
+        let step_s = std::f64::consts::TAU / (STEPS_PER_PERIOD * self.run.natural_rad_s);
+        let n_steps = (last_s / step_s).ceil().max(1.0) as usize;
+        let mut history = History { step_s, states: Vec::with_capacity(n_steps + 1) };
+        let mut state = [0.0; N];
+        (state[0], state[1]) = start;
+        for step in 0..=n_steps {
+            let time_s = step as f64 * step_s;
+            let first = self.slope(time_s, &state, &history);
+            history.states.push([state[0], state[1], first[1]]);
+            let along = |slope: &[f64; N], share: f64| -> [f64; N] {
+                std::array::from_fn(|i| state[i] + share * step_s * slope[i])
+            };
+            let middle_s = time_s + 0.5 * step_s;
+            let second = self.slope(middle_s, &along(&first, 0.5), &history);
+            let third = self.slope(middle_s, &along(&second, 0.5), &history);
+            let fourth = self.slope(time_s + step_s, &along(&third, 1.0), &history);
+            let mean: [f64; N] = std::array::from_fn(|i| {
+                (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]) / 6.0
+            });
+            state = along(&mean, 1.0);
+            if !state[0].is_finite() || state[0].abs() > 3.0 {
+                // A model that capsizes reads what nobody measures; the fit turns away from it.
+                state = [3.0; N];
+            }
+        }
+        history
     }
 }
 
@@ -109,30 +138,16 @@ pub fn readings(
         .iter()
         .filter_map(|t| t.last())
         .fold(0.0, |a: f64, b| a.max(*b));
-    let step_s = std::f64::consts::TAU / (STEPS_PER_PERIOD * run.natural_rad_s);
-    let n_steps = (last_s / step_s).ceil().max(1.0) as usize;
-    let mut history = History { step_s, states: Vec::with_capacity(n_steps + 1) };
-    let mut state = [0.0; MOST_STATES];
-    (state[0], state[1]) = start;
-    for step in 0..=n_steps {
-        let time_s = step as f64 * step_s;
-        let first = equation.slope(time_s, &state, &history);
-        history.states.push([state[0], state[1], first[1]]);
-        let along = |slope: &State, share: f64| -> State {
-            std::array::from_fn(|i| state[i] + share * step_s * slope[i])
-        };
-        let middle_s = time_s + 0.5 * step_s;
-        let second = equation.slope(middle_s, &along(&first, 0.5), &history);
-        let third = equation.slope(middle_s, &along(&second, 0.5), &history);
-        let fourth = equation.slope(time_s + step_s, &along(&third, 1.0), &history);
-        let mean: State =
-            std::array::from_fn(|i| (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]) / 6.0);
-        state = along(&mean, 1.0);
-        if !state[0].is_finite() || state[0].abs() > 3.0 {
-            // A model that capsizes reads what nobody measures; the fit turns away from it.
-            state = [3.0; MOST_STATES];
-        }
-    }
+    let n_lags: usize = terms
+        .iter()
+        .map(|term| if let Acts::Lagging(lag) = term.effect.acts { lag.n_states } else { 0 })
+        .sum();
+    let history = match n_lags {
+        0 => equation.history::<2>(start, last_s),
+        1..=2 => equation.history::<4>(start, last_s),
+        3..=4 => equation.history::<6>(start, last_s),
+        _ => equation.history::<MOST_STATES>(start, last_s),
+    };
     let roll = roll_readings(&equation, &history, roll_time_s);
     let moment = moment_time_s
         .iter()
