@@ -78,9 +78,9 @@ impl Products {
         let whole: Vec<f64> = (0..k).map(|i| self.at(i, i)).collect();
         let mut rows = Vec::with_capacity(k * n);
         let mut log_determinant = 0.0;
-        for i in 0..k {
+        for (i, whole) in whole.into_iter().enumerate() {
             let pivot = self.at(i, i);
-            let alive = pivot > NOTHING_LEFT * whole[i] && pivot > 0.0;
+            let alive = pivot > NOTHING_LEFT * whole && pivot > 0.0;
             let row: Vec<f64> = if alive {
                 log_determinant += pivot.ln();
                 self.entries[i * n..(i + 1) * n].iter().map(|v| v / pivot).collect()
@@ -90,8 +90,9 @@ impl Products {
             for a in i + 1..n {
                 let by = self.at(a, i);
                 if by != 0.0 && alive {
-                    for b in i + 1..n {
-                        self.entries[a * n + b] -= by * row[b];
+                    let entries = &mut self.entries[a * n + i + 1..(a + 1) * n];
+                    for (entry, factor) in entries.iter_mut().zip(&row[i + 1..]) {
+                        *entry -= by * factor;
                     }
                 }
             }

@@ -19,6 +19,8 @@ const SAME_SHARE: f64 = 0.01;
 const ENOUGH: f64 = 0.2;
 /// Most effects of a model.
 const MOST: usize = 5;
+/// Times that the base model is settled anew with the noise that it left.
+const MOST_STARTS: usize = 6;
 /// Effects that are fitted in full at each step.
 const FITTED: usize = 6;
 
@@ -52,16 +54,26 @@ struct Tried {
 
 /// Grows the base model of a campaign.
 pub(super) fn grow(survey: &Survey) -> Grown {
-    let start = settle(survey, survey.first_fit(), &rough_noise(survey));
-    let mut noise = white(survey.noise(&start.fit));
-    let mut current = settle(survey, start.fit, &noise);
+    let mut current = settle(survey, survey.first_fit(), &rough_noise(survey));
+    let mut noise = white(survey.noise(&current.fit));
+    // A fit that starts far away settles as its noise does.
+    for _ in 0..MOST_STARTS {
+        current = settle(survey, current.fit, &noise);
+        let next = white(survey.noise(&current.fit));
+        let change = |(a, b): (&ChannelNoise, &ChannelNoise)| (a.sd[0] / b.sd[0] - 1.0).abs();
+        let is_still = next.iter().zip(&noise).map(change).all(|change| change < 0.01);
+        noise = next;
+        if is_still {
+            break;
+        }
+    }
     let base_fit = current.fit.clone();
     let mut entered: Vec<Entered> = Vec::new();
     let (mut ranking, mut implausible) = (Vec::new(), Vec::new());
     while entered.len() < MOST {
         let Some(step) = step(survey, &current, &noise, &entered) else { break };
         if entered.is_empty() {
-            ranking = step.ranking.clone();
+            ranking.clone_from(&step.ranking);
         }
         implausible.extend(step.implausible);
         let Some(won) = step.won else { break };
@@ -197,7 +209,8 @@ fn simpler(
     entered: &[Entered],
     noise: &[ChannelNoise],
 ) -> Option<(Settled, Vec<Entered>)> {
-    for (place, one) in entered.iter().enumerate() {
+    let undecided = entered.iter().enumerate().filter(|(_, one)| !one.equivalent_to.is_empty());
+    for (place, one) in undecided {
         for needless in (0..entered.len()).filter(|other| *other != place) {
             let mut less = current.fit.clone();
             for taken in [place.max(needless), place.min(needless)] {
@@ -331,7 +344,9 @@ fn rough_noise(survey: &Survey) -> Vec<ChannelNoise> {
 }
 
 fn white(mut noise: Vec<ChannelNoise>) -> Vec<ChannelNoise> {
-    noise.iter_mut().for_each(|n| n.correlation = [0.0; 2]);
+    for one in &mut noise {
+        one.correlation = [0.0; 2];
+    }
     noise
 }
 

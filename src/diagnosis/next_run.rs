@@ -6,7 +6,7 @@ use super::observation::Observation;
 use super::run_fit::{ChannelNoise, RunState, Summary, predict, summarise};
 use super::score::score;
 use super::settle::{Settled, settle};
-use super::solve::solve;
+use super::solve::{moved, solve};
 use super::survey::{Fit, N_LAW, Survey};
 use crate::campaign::Tank;
 use crate::model::imposed::N_COURSE;
@@ -46,6 +46,8 @@ const STEADY_SHARE: f64 = 0.7;
 const LONGEST_S: f64 = 25.0;
 const SHORTEST_S: f64 = 8.0;
 const SAMPLE_S: f64 = 0.02;
+/// Times that a rival is linearised anew on a run that it has not seen.
+const RELINEARISED: usize = 4;
 
 fn plans(tank: &Tank, run: &Observation) -> Vec<(Plan, f64)> {
     let unit_m_s = run.at.speed_m_s / run.at.froude.max(1e-9);
@@ -162,15 +164,32 @@ fn expected(survey: &Survey, favourite: &Fit, rival: &Settled, plan: &Plan, span
     let mut guess = state;
     (guess.base.natural_rad_s, guess.base.b1_per_s, guess.base.b3_s) = (law[0], law[1], law[2]);
     guess.base.log_scale = rival.fit.log_scale;
-    let fit = with_run(survey, &rival.fit, &run, guess.clone());
-    let summary = summarise(&run, &guess, &fit.terms(last), &[], &noise);
+    let mut fit = with_run(survey, &rival.fit, &run, guess);
     let grown = grown_survey(survey, run);
-    let mut summaries: Vec<Summary> = rival.summaries.clone();
-    summaries.push(summary);
     let scatter = rival.solution.scatter;
-    let with = solve(&grown, &fit, &summaries, scatter).least_misfit;
+    let mut least = f64::INFINITY;
+    // The rival may answer with all its numbers, as far as the runs so far let it.
+    let mut terms = fit.terms(last);
+    for _ in 0..RELINEARISED {
+        let mut summary = summarise(&grown.runs[last], &fit.states[last], &terms, &[], &noise);
+        let moved_by: Vec<f64> = terms
+            .iter()
+            .zip(fit.terms(last))
+            .flat_map(|(now, then)| {
+                now.values.iter().zip(then.values).map(|(n, t)| n - t).collect::<Vec<_>>()
+            })
+            .collect();
+        summary.refer_back(&moved_by);
+        let mut summaries: Vec<Summary> = rival.summaries.clone();
+        summaries.push(summary);
+        let solution = solve(&grown, &fit, &summaries, scatter);
+        least = least.min(solution.least_misfit);
+        let next = moved(&grown, &fit, &summaries, &solution, 1.0);
+        terms = next.terms(last);
+        fit.states[last] = next.states[last].clone();
+    }
     let without = solve(survey, &rival.fit, &rival.summaries, scatter).least_misfit;
-    0.5 * (with - without).max(0.0)
+    0.5 * (least - without).max(0.0)
 }
 
 /// The run that says most.

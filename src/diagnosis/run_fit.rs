@@ -45,7 +45,9 @@ pub(super) fn predict(run: &Observation, state: &RunState, terms: &[Term]) -> Ve
         }
     };
     let offset = own[own.len() - 1];
-    roll.iter_mut().for_each(|r| *r += offset);
+    for reading in &mut roll {
+        *reading += offset;
+    }
     roll.extend(moment);
     roll
 }
@@ -89,6 +91,19 @@ impl Summary {
         empty.eliminated.rest = Products::zero(self.eliminated.rest.n());
         empty.own_gain = 0.0;
         empty
+    }
+
+    /// Lets the steps of the terms' parameters count from where they were `moved_by` ago.
+    pub(super) fn refer_back(&mut self, moved_by: &[f64]) {
+        let rest = &self.eliminated.rest;
+        let last = rest.n() - 1;
+        let mut places: Vec<Vec<(usize, f64)>> = (0..=last).map(|i| vec![(i, 1.0)]).collect();
+        for (place, by) in places[N_BASE..].iter_mut().zip(moved_by) {
+            place.push((last, *by));
+        }
+        let mut referred = Products::zero(last + 1);
+        referred.gather(rest, &places);
+        self.eliminated.rest = referred;
     }
 }
 

@@ -313,7 +313,7 @@ pub(super) fn moved(
             }
         }
     }
-    for run in 0..survey.runs.len() {
+    for (run, summary) in summaries.iter().enumerate() {
         let places = layout.places(survey, fit, run);
         let local: Vec<f64> = places
             .iter()
@@ -325,7 +325,7 @@ pub(super) fn moved(
         for i in 0..3 {
             whole[i] += deviates[i] - now[i];
         }
-        let own = summaries[run].eliminated.back(&whole);
+        let own = summary.eliminated.back(&whole);
         let state = &mut next.states[run];
         state.own.iter_mut().zip(&own).for_each(|(number, step)| *number += share * step);
         state.base.natural_rad_s += share * whole[0];

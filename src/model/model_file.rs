@@ -66,7 +66,7 @@ impl ModelFile {
                     .map(|k| format!("{} [{}]", known.parameter(k).symbol, known.parameter(k).unit))
                     .collect()
             });
-            let _ = write!(text, "sets = [    # {}\n", symbols.join(", "));
+            let _ = writeln!(text, "sets = [    # {}", symbols.join(", "));
             for set in &effect.sets {
                 let _ = writeln!(text, "  {set:?},");
             }
