@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The layers of `src`, top first; each may name those below it.
-const LAYERS: [&str; 14] = [
+const LAYERS: [&str; 16] = [
     "main",
     "command",
     "bench",
@@ -14,9 +14,11 @@ const LAYERS: [&str; 14] = [
     "catalogue",
     "reference",
     "tank",
+    "diagnosis",
     "results",
     "inverse",
     "campaign",
+    "model",
     "run",
     "roll",
     "hull",
@@ -40,6 +42,7 @@ const OWNERS: [(&str, &[&str]); 20] = [
         &[
             "src/campaign",
             "src/tank",
+            "src/model",
             "devices/src/driver",
             "devices/src/emulator",
             "devices/src/profile",

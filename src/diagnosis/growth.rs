@@ -1,0 +1,395 @@
+//! The model grows by one effect at a time until nothing more is to be named.
+
+use super::leftover::{self, Leftover};
+use super::run_fit::ChannelNoise;
+use super::score::{Scored, score};
+use super::settle::{Settled, settle};
+use super::solve::{Layout, scatters, solve};
+use super::survey::{Extension, Fit, Survey};
+use crate::model::effects;
+use crate::model::{Acts, Layer};
+
+/// Least logarithm of a Bayes factor at which an effect may enter: one in a thousand by chance.
+pub(super) const ENTERS: f64 = 7.0;
+/// Difference of misfits below which two effects cannot be told apart.
+const SAME: f64 = 12.0;
+/// The same as a share of what the effect explains.
+const SAME_SHARE: f64 = 0.01;
+/// Share of what is left for sure that an effect must take away to enter.
+const ENOUGH: f64 = 0.2;
+/// Most effects of a model.
+const MOST: usize = 5;
+/// Times that the base model is settled anew with the noise that it left.
+const MOST_STARTS: usize = 6;
+/// Effects that are fitted in full at each step.
+const FITTED: usize = 6;
+
+/// One effect in the model with what cannot be told from it.
+#[derive(Debug, Clone)]
+pub(super) struct Entered {
+    pub(super) id: &'static str,
+    pub(super) log_bayes_factor: f64,
+    /// What it explains: the fall of the misfit.
+    pub(super) explained: f64,
+    pub(super) equivalent_to: Vec<&'static str>,
+}
+
+/// The grown model.
+pub(super) struct Grown {
+    pub(super) base: Settled,
+    pub(super) last: Settled,
+    pub(super) noise: Vec<ChannelNoise>,
+    pub(super) entered: Vec<Entered>,
+    /// Every effect with the logarithm of its Bayes factor against the base model, best first.
+    pub(super) ranking: Vec<(&'static str, f64)>,
+    /// Effects that would explain more but lie outside their physical range, with that.
+    pub(super) implausible: Vec<(&'static str, f64)>,
+}
+
+/// A candidate fitted in full.
+struct Tried {
+    settled: Settled,
+    id: &'static str,
+}
+
+/// Grows the base model of a campaign.
+pub(super) fn grow(survey: &Survey) -> Grown {
+    let mut current = settle(survey, survey.first_fit(), &rough_noise(survey));
+    let mut noise = white(survey.noise(&current.fit));
+    // A fit that starts far away settles as its noise does.
+    for _ in 0..MOST_STARTS {
+        current = settle(survey, current.fit, &noise);
+        let next = white(survey.noise(&current.fit));
+        let change = |(a, b): (&ChannelNoise, &ChannelNoise)| (a.sd[0] / b.sd[0] - 1.0).abs();
+        let is_still = next.iter().zip(&noise).map(change).all(|change| change < 0.01);
+        noise = next;
+        if is_still {
+            break;
+        }
+    }
+    let base_fit = current.fit.clone();
+    let mut entered: Vec<Entered> = Vec::new();
+    let (mut ranking, mut implausible) = (Vec::new(), Vec::new());
+    while entered.len() < MOST {
+        let Some(step) = step(survey, &current, &noise, &entered) else { break };
+        if entered.is_empty() {
+            ranking.clone_from(&step.ranking);
+        }
+        implausible.extend(step.implausible);
+        let Some(won) = step.won else { break };
+        noise = step.noise;
+        current = won.0;
+        entered.push(won.1);
+    }
+    if entered.len() > 1 {
+        (current, entered) = check_backward(survey, current, entered, &noise);
+    }
+    let base = settle(survey, base_fit, &noise);
+    let last = settle(survey, current.fit, &noise);
+    Grown { base, last, noise, entered, ranking, implausible }
+}
+
+/// One step of growth.
+struct Step {
+    /// The grown model, if an effect may enter.
+    won: Option<(Settled, Entered)>,
+    noise: Vec<ChannelNoise>,
+    ranking: Vec<(&'static str, f64)>,
+    implausible: Vec<(&'static str, f64)>,
+}
+
+/// Tries to add one effect; none when no effect is worth a look.
+fn step(
+    survey: &Survey,
+    before: &Settled,
+    noise: &[ChannelNoise],
+    entered: &[Entered],
+) -> Option<Step> {
+    let scores = score(survey, &before.fit, noise);
+    let mut ranking: Vec<(&'static str, f64)> =
+        scores.iter().map(|s| (s.extension.effect.id, s.log_bayes_factor)).collect();
+    let quiet =
+        |ranking| Some(Step { won: None, noise: noise.to_vec(), ranking, implausible: Vec::new() });
+    if scores.first().is_none_or(|s| s.log_bayes_factor < 0.5 * ENTERS) {
+        return quiet(ranking);
+    }
+    // The noise is what the best explanation leaves, memory included; under it the causes are
+    // weighed again.
+    let mut first = fit_all(survey, before, &scores[..scores.len().min(3)], noise);
+    sort(&mut first);
+    let best = &first[0].settled;
+    if best.log_evidence < before.log_evidence {
+        return quiet(ranking);
+    }
+    let noise = survey.noise(&best.fit);
+    let current = settle(survey, before.fit.clone(), &noise);
+    let scores = score(survey, &current.fit, &noise);
+    let worth = 0.1 * scores.first().map_or(0.0, |s| s.log_bayes_factor).max(0.0);
+    let mut chosen: Vec<Scored> =
+        scores.iter().take(FITTED).filter(|s| s.log_bayes_factor >= worth).cloned().collect();
+    // What explained most before the noise had a memory is never forgotten.
+    for earlier in &first {
+        if !chosen.iter().any(|s| s.extension.effect.id == earlier.id)
+            && let Some(again) = scores.iter().find(|s| s.extension.effect.id == earlier.id)
+        {
+            chosen.push(again.clone());
+        }
+    }
+    let mut tried = fit_all(survey, &current, &chosen, &noise);
+    sort(&mut tried);
+    for one in &tried {
+        if let Some(place) = ranking.iter_mut().find(|(id, _)| *id == one.id) {
+            place.1 = one.settled.log_evidence - current.log_evidence;
+        }
+    }
+    ranking.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let (plausible, wild): (Vec<Tried>, Vec<Tried>) =
+        tried.into_iter().partition(|one| is_plausible(survey, &one.settled));
+    let implausible = wild
+        .iter()
+        .map(|one| (one.id, one.settled.log_evidence - current.log_evidence))
+        .filter(|(_, log)| *log > ENTERS)
+        .collect();
+    let won = winner(survey, &current, plausible, entered);
+    Some(Step { won, noise, ranking, implausible })
+}
+
+fn sort(tried: &mut [Tried]) {
+    tried.sort_by(|a, b| b.settled.log_evidence.total_cmp(&a.settled.log_evidence));
+}
+
+/// The best of the tried effects, if it may enter, with those that cannot be told from it.
+fn winner(
+    survey: &Survey,
+    current: &Settled,
+    plausible: Vec<Tried>,
+    known: &[Entered],
+) -> Option<(Settled, Entered)> {
+    let best = plausible.first()?;
+    let log_bayes_factor = best.settled.log_evidence - current.log_evidence;
+    if log_bayes_factor < ENTERS || !explains_enough(survey, &current.fit, &best.settled.fit) {
+        return None;
+    }
+    let explained = explained(survey, current, &best.settled);
+    // What an approximate effect leaves of itself is no other effect.
+    let crumbs = known.iter().filter(|entered| is_approximate(entered.id));
+    if crumbs.map(|entered| SAME_SHARE * entered.explained).any(|crumb| explained < crumb) {
+        return None;
+    }
+    let equivalent_to = plausible[1..]
+        .iter()
+        .filter(|one| is_same(survey, current, &best.settled, &one.settled))
+        .map(|one| one.id)
+        .collect();
+    let entered = Entered { id: best.id, log_bayes_factor, explained, equivalent_to };
+    plausible.into_iter().next().map(|best| (best.settled, entered))
+}
+
+/// Whether these runs cannot tell a rival from the favourite: it is as probable, or explains all
+/// but a hundredth of the same.
+fn is_same(survey: &Survey, before: &Settled, favourite: &Settled, rival: &Settled) -> bool {
+    let behind = favourite.log_evidence - rival.log_evidence;
+    let gained = rival.log_evidence - before.log_evidence;
+    let (most, as_well) = (explained(survey, before, favourite), explained(survey, before, rival));
+    let explains_it = gained > ENTERS && most - as_well < SAME.max(SAME_SHARE * most);
+    (2.0 * behind < SAME && gained > 0.5 * ENTERS) || explains_it
+}
+
+/// Whether the form of an effect stands for many that differ a little: waves, memories, hands.
+fn is_approximate(id: &str) -> bool {
+    effects::effect(id).is_some_and(|effect| {
+        effect.layer == Layer::Tank || matches!(effect.acts, Acts::Lagging(_))
+    })
+}
+
+/// A model with one effect fewer, where another reading of a cause makes it needless.
+fn simpler(
+    survey: &Survey,
+    current: &Settled,
+    entered: &[Entered],
+    noise: &[ChannelNoise],
+) -> Option<(Settled, Vec<Entered>)> {
+    let undecided = entered.iter().enumerate().filter(|(_, one)| !one.equivalent_to.is_empty());
+    for (place, one) in undecided {
+        for needless in (0..entered.len()).filter(|other| *other != place) {
+            let mut less = current.fit.clone();
+            for taken in [place.max(needless), place.min(needless)] {
+                less.extensions.remove(taken);
+            }
+            let without = settle(survey, less, noise);
+            let scores = score(survey, &without.fit, noise);
+            for id in &one.equivalent_to {
+                let Some(reading) = scores.iter().find(|s| s.extension.effect.id == *id) else {
+                    continue;
+                };
+                let fit = with(&without.fit, reading.extension.clone());
+                let settled = settle(survey, fit, noise);
+                if settled.log_evidence > current.log_evidence - 0.25 * SAME
+                    && is_plausible(survey, &settled)
+                {
+                    let mut fit = settled.fit;
+                    let newest = fit.extensions.pop()?;
+                    let at = place.min(fit.extensions.len());
+                    fit.extensions.insert(at, newest);
+                    let mut kept = entered.to_vec();
+                    kept[place] = Entered { id, equivalent_to: vec![one.id], ..one.clone() };
+                    let moved = kept.remove(place);
+                    kept.remove(if needless > place { needless - 1 } else { needless });
+                    kept.insert(at.min(kept.len()), moved);
+                    return Some((settle(survey, fit, noise), kept));
+                }
+            }
+        }
+    }
+    None
+}
+
+/// The fall of the misfit from one model to the next when no run may leave its law: what scatter
+/// could hide is still explained.
+fn explained(survey: &Survey, before: &Settled, after: &Settled) -> f64 {
+    let tight = scatters(survey)[0];
+    let least =
+        |settled: &Settled| solve(survey, &settled.fit, &settled.summaries, tight).least_misfit;
+    least(before) - least(after)
+}
+
+/// Whether an effect takes its part of what is left for sure: what removes a little of a large
+/// remainder is not its cause, whatever its odds.
+fn explains_enough(survey: &Survey, before: &Fit, after: &Fit) -> bool {
+    let (before, after) = (leftovers(survey, before), leftovers(survey, after));
+    if !before.iter().any(Leftover::is_sure) {
+        return true;
+    }
+    let excess = |all: &[Leftover]| all.iter().map(|l| l.excess).sum::<f64>();
+    excess(&before) - excess(&after) > ENOUGH * excess(&before)
+}
+
+/// What a fit leaves of every channel of every run.
+pub(super) fn leftovers(survey: &Survey, fit: &Fit) -> Vec<Leftover> {
+    let residuals = survey.residuals(fit);
+    survey.runs.iter().zip(&residuals).flat_map(|(run, left)| leftover::of(run, left)).collect()
+}
+
+/// Takes each effect out again: one that is missed too little leaves, and what could stand in its
+/// place, the others given, is told with it.
+fn check_backward(
+    survey: &Survey,
+    grown: Settled,
+    mut entered: Vec<Entered>,
+    noise: &[ChannelNoise],
+) -> (Settled, Vec<Entered>) {
+    let mut current = settle(survey, grown.fit, noise);
+    while let Some((fewer, kept)) = simpler(survey, &current, &entered, noise) {
+        (current, entered) = (fewer, kept);
+    }
+    let mut e = 0;
+    while e < entered.len() {
+        let mut less = current.fit.clone();
+        let taken = less.extensions.remove(e);
+        let without = settle(survey, less, noise);
+        let missed = current.log_evidence - without.log_evidence;
+        if missed < ENTERS {
+            current = without;
+            entered.remove(e);
+            continue;
+        }
+        let explained = explained(survey, &without, &current);
+        let rivals: Vec<Scored> = score(survey, &without.fit, noise)
+            .into_iter()
+            .filter(|s| {
+                s.extension.effect.id != taken.effect.id && s.log_bayes_factor > 0.3 * missed
+            })
+            .take(4)
+            .collect();
+        let tried = fit_all(survey, &without, &rivals, noise);
+        entered[e].log_bayes_factor = missed;
+        entered[e].explained = explained;
+        entered[e].equivalent_to = tried
+            .iter()
+            .filter(|one| is_plausible(survey, &one.settled))
+            .filter(|one| is_same(survey, &without, &current, &one.settled))
+            .map(|one| one.id)
+            .collect();
+        let better = tried
+            .into_iter()
+            .filter(|one| is_plausible(survey, &one.settled))
+            .filter(|one| one.settled.log_evidence > current.log_evidence + 0.5 * SAME)
+            .max_by(|a, b| a.settled.log_evidence.total_cmp(&b.settled.log_evidence));
+        if let Some(better) = better {
+            // The newcomer takes the place of the one that was taken out.
+            let mut fit = better.settled.fit.clone();
+            if let Some(newest) = fit.extensions.pop() {
+                fit.extensions.insert(e, newest);
+            }
+            entered[e].id = better.id;
+            entered[e].equivalent_to.retain(|id| *id != better.id);
+            current = settle(survey, fit, noise);
+        }
+        e += 1;
+    }
+    (current, entered)
+}
+
+fn rough_noise(survey: &Survey) -> Vec<ChannelNoise> {
+    survey
+        .runs
+        .iter()
+        .map(|run| {
+            // A first fit must not chase what no equation of roll explains.
+            let floor = [1e-3 * run.at.amplitude_rad, 1e-9];
+            let sd = std::array::from_fn(|c| run.rough_noise[c].max(floor[c]));
+            ChannelNoise { sd, correlation: [0.0; 2] }
+        })
+        .collect()
+}
+
+fn white(mut noise: Vec<ChannelNoise>) -> Vec<ChannelNoise> {
+    for one in &mut noise {
+        one.correlation = [0.0; 2];
+    }
+    noise
+}
+
+fn fit_all(
+    survey: &Survey,
+    current: &Settled,
+    scores: &[Scored],
+    noise: &[ChannelNoise],
+) -> Vec<Tried> {
+    scores
+        .iter()
+        .map(|scored| {
+            let settled = settle(survey, with(&current.fit, scored.extension.clone()), noise);
+            Tried { settled, id: scored.extension.effect.id }
+        })
+        .collect()
+}
+
+/// The model with one more effect, its strengths brought into their range.
+fn with(fit: &Fit, mut extension: Extension) -> Fit {
+    let effect = extension.effect;
+    for values in &mut extension.slots {
+        for (k, value) in values.iter_mut().enumerate() {
+            let [low, high] = effect.parameter(k).range;
+            *value = value.clamp(low, high);
+        }
+    }
+    let mut fit = fit.clone();
+    fit.extensions.push(extension);
+    fit
+}
+
+/// Whether the newest effect lies inside its physical range, as far as its deviation allows.
+fn is_plausible(survey: &Survey, settled: &Settled) -> bool {
+    let Some(extension) = settled.fit.extensions.last() else { return true };
+    let layout = Layout::new(survey, &settled.fit);
+    let e = settled.fit.extensions.len() - 1;
+    extension.slots.iter().enumerate().all(|(s, values)| {
+        (0..extension.effect.strengths.len()).all(|k| {
+            let [low, high] = extension.effect.strengths[k].range;
+            let column = layout.parameter(&settled.fit, e, s, k);
+            let sd = settled.solution.covariance[column][column].max(0.0).sqrt();
+            values[k] > low - 2.0 * sd && values[k] < high + 2.0 * sd
+        })
+    })
+}

@@ -1,0 +1,27 @@
+//! What the simulation gets wrong: shown, named, mended, and the gain measured.
+//!
+//! All runs of a campaign are fitted together by the base model. One pass of sensitivities scores
+//! every effect of the table (`score`); the best are fitted in full (`settle`) and weighed by
+//! their evidence, so that the model grows by one effect at a time (`growth`) until nothing more
+//! is to be named.
+
+mod clipping;
+mod elimination;
+mod facts;
+mod gain;
+mod growth;
+mod leftover;
+mod next_run;
+mod observation;
+mod records;
+mod run_fit;
+mod score;
+mod settle;
+mod solve;
+mod survey;
+mod verdict;
+
+pub use leftover::Leftover;
+pub use next_run::NextRun;
+pub use observation::Observation;
+pub use verdict::{Bias, Cause, Change, Diagnosis, Gain, Verdict, diagnose};

@@ -1,0 +1,21 @@
+//! The zero of the roll channel drifts.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
+
+/// The effect.
+pub(super) const EFFECT: Effect = Effect {
+    id: "instrument.roll_drift",
+    layer: Layer::Instrument,
+    equation: "phi + e0 + d t/20 s",
+    strengths: &[
+        Parameter::new("d", "rad", 0.002, [-0.02, 0.02]),
+        Parameter::new("e0", "rad", 0.003, [-0.05, 0.05]),
+    ],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Campaign,
+    shows: any_run,
+    acts: Acts::Roll(|all, p| all.iter().map(|i| p[1] + p[0] * i.time_s / 20.0).collect()),
+    always_equivalent: &[],
+    reference: "sensor data sheets",
+};

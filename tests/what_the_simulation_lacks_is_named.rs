@@ -1,0 +1,151 @@
+//! `rolltank diagnose`: nothing is found where nothing is wrong, and a cause where there is one.
+
+use std::fs;
+use std::path::PathBuf;
+
+use rolltank::campaign::{self, Campaign};
+use rolltank::diagnosis::{Diagnosis, Observation, Verdict, diagnose};
+use rolltank::model::effects;
+use rolltank::model::model_file::ModelFile;
+use rolltank::pipeline::{self, Options};
+use rolltank::report::{DIAGNOSIS_SCHEMA, diagnosis_json};
+use serde_json::Value;
+
+use super::campaign_folder::rolltank;
+use super::json_schema;
+
+/// Two decays at rest, with whatever is wrong with their channel.
+fn scenario(wrong: &str) -> String {
+    let pass = |heel: &str| {
+        format!(
+            "[[pass]]\ncondition = \"bare hull\"\nfroude = 0.0\n{wrong}\naction = [\n\
+             {{ rest = {{ duration_s = 4.0 }} }},\n\
+             {{ hold = {{ heel_deg = {heel}, duration_s = 8.0, ramp_s = 1.5 }} }},\n\
+             {{ release = {{ duration_s = 16.0 }} }},\n]\n"
+        )
+    };
+    format!(
+        "name = \"two decays\"\n[hull]\nlength_pp_m = 2.5\nbeam_m = 0.387\ndraft_m = 0.132\n\
+         displacement_m3 = 0.110\ngm_m = 0.074\n[tank]\nlength_m = 50.0\nwidth_m = 10.0\n\
+         depth_m = 5.0\ncarriage_max_speed_m_s = 2.0\n[instruments.roll]\n\
+         sample_rate_hz = 50.0\nnoise_deg = 0.05\n[[condition]]\nname = \"bare hull\"\n\
+         natural_frequency_rad_s = 6.905\n\
+         damping.law = {{ b0_per_s = 0.38, kappa = 11.9, b3_s = 0.144, scatter_per_s = 0.0 }}\n\
+         {}{}",
+        pass("12.0"),
+        pass("-6.0")
+    )
+}
+
+/// The document of a simulated campaign, and the folder that holds it.
+fn diagnosed(wrong: &str, more: &[&str]) -> (Value, tempfile::TempDir) {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    fs::write(folder.path().join("scenario.toml"), scenario(wrong)).expect("the disk has room");
+    let made = rolltank(folder.path(), &["simulate", "scenario.toml", "-o", "day"]);
+    assert_eq!(made.exit, 0, "{}", made.err);
+    let mut arguments = vec!["diagnose", "day", "--json"];
+    arguments.extend(more);
+    let told = rolltank(folder.path(), &arguments);
+    assert_eq!(told.exit, 0, "{}", told.err);
+    (serde_json::from_str(&told.out).expect("JSON"), folder)
+}
+
+fn schema() -> Value {
+    serde_json::from_str(DIAGNOSIS_SCHEMA).expect("the schema is JSON")
+}
+
+#[test]
+fn a_simulation_that_lacks_nothing_is_adequate_and_no_file_is_written() {
+    let (document, folder) = diagnosed("", &[]);
+    assert_eq!(json_schema::violations(&schema(), &document), Vec::<String>::new());
+    assert_eq!(document["verdict"], "adequate", "{document:#}");
+    assert_eq!(document["causes"], Value::Array(Vec::new()));
+    assert!(!folder.path().join("day/results").exists());
+}
+
+#[test]
+fn a_zero_that_was_never_taken_is_named_with_the_heel_that_no_roll_test_parts_from_it() {
+    let (document, folder) = diagnosed("zero = { roll_deg = 0.2 }", &["--write-model"]);
+    assert_eq!(json_schema::violations(&schema(), &document), Vec::<String>::new());
+    assert_eq!(document["verdict"], "ambiguous", "{document:#}");
+    let cause = &document["causes"][0];
+    assert_eq!(cause["effect"], "instrument.roll_offset");
+    assert_eq!(cause["equivalent_to"][0], "restoring.heel");
+    let zero = &cause["parameters"][0];
+    let (low, high) = (zero["lo95"].as_f64().unwrap(), zero["hi95"].as_f64().unwrap());
+    assert!((low..high).contains(&0.2_f64.to_radians()), "{low} to {high}");
+    assert_eq!(document["next_run"]["kind"], "rest_reading");
+    let gain = &document["gain"]["held_out_rmse_deg"];
+    assert!(gain["after"].as_f64() < gain["before"].as_f64(), "{gain}");
+    let model = fs::read_to_string(folder.path().join("day/results/model.toml")).unwrap();
+    let model = ModelFile::from_toml(&model).expect("what was written can be read");
+    assert_eq!(model.effects[0].id, "instrument.roll_offset");
+}
+
+#[test]
+fn the_same_recordings_give_the_same_bytes() {
+    let wrong = "waves = { moment_n_m = 0.02, frequency_rad_s = 6.3, decay_s = 1e6 }";
+    let ((first, _), (second, _)) = (diagnosed(wrong, &[]), diagnosed(wrong, &[]));
+    assert_eq!(first.to_string(), second.to_string());
+    assert_ne!(first["verdict"], "adequate", "{first:#}");
+}
+
+#[test]
+fn every_effect_has_a_name_of_its_own_and_says_what_it_is() {
+    let mut ids: Vec<&str> = effects::all().iter().map(|effect| effect.id).collect();
+    for effect in effects::all() {
+        assert!(!effect.equation.is_empty() && !effect.reference.is_empty(), "{}", effect.id);
+        for k in 0..effect.n_parameters() {
+            let [low, high] = effect.parameter(k).range;
+            assert!(low < high, "{}", effect.id);
+        }
+    }
+    ids.extend(effects::UNTESTABLE.iter().map(|(id, _)| *id));
+    let n = ids.len();
+    ids.sort_unstable();
+    ids.dedup();
+    assert_eq!(ids.len(), n);
+}
+
+/// The first run of the measured campaign, at Fr 0; none where the data are not at hand.
+fn kvlcc2() -> Option<(Campaign, Diagnosis)> {
+    let root = std::env::var_os("ROLLTANK_MEASURED").map_or_else(
+        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/measured"),
+        PathBuf::from,
+    );
+    let folder = root.join("kvlcc2");
+    if !folder.is_dir() {
+        println!("no measured data at {}: story not told", folder.display());
+        return None;
+    }
+    let campaign = campaign::read(&folder).expect("the campaign file is right");
+    let mut runs = Vec::new();
+    pipeline::replay(&campaign, &Options::default(), &mut |_| {}, &mut |run, _| {
+        if run.froude < 0.01 {
+            runs.push(Observation::new(run, &campaign, runs.len())?);
+        }
+        Ok(())
+    })
+    .expect("the recordings can be read");
+    let diagnosis = diagnose(runs, &campaign.tank).expect("there is a run");
+    Some((campaign, diagnosis))
+}
+
+#[test]
+fn the_measured_tanker_lacks_cubic_restoring_or_an_inertia_that_changes_with_the_roll() {
+    let Some((_, diagnosis)) = kvlcc2() else { return };
+    let document: Value = serde_json::from_str(&diagnosis_json(Some(&diagnosis))).expect("JSON");
+    assert_eq!(json_schema::violations(&schema(), &document), Vec::<String>::new());
+    assert_eq!(diagnosis.verdict, Verdict::Ambiguous, "{document:#}");
+    let first = &diagnosis.causes[0];
+    let mut class = vec![first.effect];
+    class.extend(&first.equivalent_to);
+    for one in ["restoring.cubic", "inertia.amplitude"] {
+        assert!(class.contains(&one), "{class:?}");
+    }
+    let energy = |left: &[rolltank::diagnosis::Leftover]| left[0].rms.powi(2);
+    let gain = energy(&diagnosis.left_before) / energy(&diagnosis.left_after);
+    assert!(gain > 50.0, "residual energy falls by {gain:.0} times");
+    let next = diagnosis.next_run.expect("a run that parts them");
+    assert_eq!(next.kind, "forced", "{}", next.why);
+}
