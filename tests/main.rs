@@ -8,6 +8,7 @@ mod decays_are_identified;
 mod dense_posterior;
 mod draws_belong_together;
 mod forced_runs_of_any_course;
+mod hidden_tank;
 mod json_schema;
 mod kvlcc2_is_identified_as_published;
 mod long_campaigns_stay_small;

@@ -1,0 +1,105 @@
+//! One campaign from its draw to its score, as a line of the file of outcomes.
+
+use std::cell::Cell;
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::hidden_tank::campaign::{Asked, Campaign, Effect};
+use crate::hidden_tank::draw::Draw;
+use crate::hidden_tank::effects::row;
+use crate::hidden_tank::fit::misfit;
+use crate::hidden_tank::folder::play;
+use crate::hidden_tank::score::score;
+use crate::hidden_tank::verdict::{Verdict, diagnose};
+
+/// What is left of a misfit below which one effect stands for another (EFFECTS.md, section 6).
+const STANDS_FOR: f64 = 12.0;
+
+/// The outcomes written so far; a line that was cut short is left out, and its cell run again.
+pub(crate) fn read(file: &Path) -> Vec<Value> {
+    let text = std::fs::read_to_string(file).unwrap_or_default();
+    text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
+}
+
+/// What the base cannot take up of each hidden effect alone.
+pub(crate) fn lambdas(campaign: &Campaign) -> Vec<f64> {
+    let alone = |effect: &Effect| misfit(campaign, &[copy(effect)], None);
+    campaign.effects.iter().map(alone).map(|lambda| (lambda * 10.0).round() / 10.0).collect()
+}
+
+fn copy(effect: &Effect) -> Effect {
+    Effect { row: effect.row, values: effect.values.clone() }
+}
+
+/// Draws, plays, diagnoses and scores a campaign.
+pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
+    let campaign = Campaign::draw(asked);
+    let lambda = lambdas(&campaign);
+    let place = tempfile::tempdir().expect("a place for a campaign");
+    let played = play(&campaign, place.path());
+    let (answer, seconds) = timed(|| diagnose(program, &played.folder));
+    let mut line = json!({
+        "name": asked.name(), "hidden": asked.hidden, "size": asked.size,
+        "set": asked.set.name(), "seed": asked.seed, "scatter": asked.scatter,
+        "keels": campaign.keels, "lambda": lambda, "seconds": seconds,
+    });
+    let verdict = match answer {
+        Ok(verdict) => verdict,
+        Err(complaint) => {
+            line["outcome"] = json!("failed");
+            line["complaint"] = json!(complaint);
+            return line;
+        }
+    };
+    let stood_for = Cell::new(Value::Null);
+    let outcome = score(&verdict, &asked.hidden, asked.set, |cause, hidden| {
+        let left = left_by(&campaign, cause, hidden);
+        stood_for.set(json!({ "cause": cause, "hidden": hidden, "lambda_left": left }));
+        left < STANDS_FOR
+    });
+    line["verdict"] = json!(verdict.word);
+    line["causes"] =
+        verdict.causes.iter().map(|cause| json!(cause.effect)).collect::<Vec<_>>().into();
+    line["equivalent_to"] =
+        verdict.causes.iter().map(|cause| json!(cause.equivalent_to)).collect::<Vec<_>>().into();
+    line["outcome"] = json!(outcome.word());
+    line["stands_for"] = stood_for.take();
+    line["values"] =
+        campaign.effects.iter().map(|effect| json!(effect.values)).collect::<Vec<_>>().into();
+    tell(&mut line, &verdict);
+    line
+}
+
+/// What else of the answer the tables need.
+fn tell(line: &mut Value, verdict: &Verdict) {
+    let json = &verdict.json;
+    line["parameters"] = json["causes"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .map(|cause| cause["parameters"].clone())
+        .collect::<Vec<_>>()
+        .into();
+    for part in ["gain", "bias", "next_run", "residual"] {
+        line[part] = json[part].clone();
+    }
+}
+
+/// What is left where an effect that the program names is fitted beside the base to the hidden
+/// one; nothing could tell the two apart on these runs if it is next to nothing.
+fn left_by(campaign: &Campaign, cause: &str, hidden: &str) -> f64 {
+    let hidden = campaign.effects.iter().find(|effect| effect.row.id == hidden);
+    let (Some(hidden), Some(cause)) = (hidden, row(cause)) else { return f64::INFINITY };
+    let values = (cause.draw)(1.0, &mut Draw::named("a middling one"), &campaign.base);
+    let beside = Effect { row: cause, values };
+    misfit(campaign, &[copy(hidden)], Some(&beside))
+}
+
+/// The result with the seconds that it took.
+#[expect(clippy::disallowed_methods, reason = "the speed is part of what is judged")]
+fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let start = std::time::Instant::now();
+    let result = work();
+    (result, (start.elapsed().as_secs_f64() * 1000.0).round() / 1000.0)
+}
