@@ -48,13 +48,7 @@ pub(crate) fn all(arguments: &Arguments) -> Vec<Asked> {
     cells
 }
 
-fn asked(
-    arguments: &Arguments,
-    set: RunSet,
-    hidden: Vec<String>,
-    size: f64,
-    seed: u64,
-) -> Asked {
+fn asked(arguments: &Arguments, set: RunSet, hidden: Vec<String>, size: f64, seed: u64) -> Asked {
     Asked { set, hidden, size, seed, scatter: arguments.scatter }
 }
 

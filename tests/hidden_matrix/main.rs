@@ -10,6 +10,8 @@ mod hidden_tank;
 
 mod arguments;
 mod cells;
+mod count;
+mod figures;
 mod outcome;
 mod tables;
 

@@ -10,7 +10,8 @@ use crate::hidden_tank::draw::Draw;
 use crate::hidden_tank::effects::row;
 use crate::hidden_tank::fit::misfit;
 use crate::hidden_tank::folder::play;
-use crate::hidden_tank::score::score;
+use crate::hidden_tank::score::{Outcome, score};
+use crate::hidden_tank::timeline::Timeline;
 use crate::hidden_tank::verdict::{Verdict, diagnose};
 
 /// What is left of a misfit below which one effect stands for another (EFFECTS.md, section 6).
@@ -43,6 +44,7 @@ pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
         "name": asked.name(), "hidden": asked.hidden, "size": asked.size,
         "set": asked.set.name(), "seed": asked.seed, "scatter": asked.scatter,
         "keels": campaign.keels, "lambda": lambda, "seconds": seconds,
+        "noise_rmse_deg": noise_rmse_deg(&campaign),
     });
     let verdict = match answer {
         Ok(verdict) => verdict,
@@ -63,12 +65,28 @@ pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
         verdict.causes.iter().map(|cause| json!(cause.effect)).collect::<Vec<_>>().into();
     line["equivalent_to"] =
         verdict.causes.iter().map(|cause| json!(cause.equivalent_to)).collect::<Vec<_>>().into();
-    line["outcome"] = json!(outcome.word());
+    line["outcome"] = json!(word(outcome));
     line["stands_for"] = stood_for.take();
     line["values"] =
         campaign.effects.iter().map(|effect| json!(effect.values)).collect::<Vec<_>>().into();
     tell(&mut line, &verdict);
     line
+}
+
+/// What no model could foretell of the roll: recording less the same without noise, in the runs.
+fn noise_rmse_deg(campaign: &Campaign) -> f64 {
+    let (mut sum, mut n) = (0.0, 0.0);
+    for pass in &campaign.passes {
+        let [noisy, still] = [true, false].map(|noisy| campaign.rows(pass, noisy));
+        let line = Timeline::of(pass);
+        for (i, time_s) in noisy.time_s.iter().enumerate() {
+            if (line.start_s..line.end_s).contains(time_s) {
+                sum += (noisy.roll_deg[i] - still.roll_deg[i]).powi(2);
+                n += 1.0;
+            }
+        }
+    }
+    f64::sqrt(sum / n)
 }
 
 /// What else of the answer the tables need.
@@ -102,4 +120,17 @@ fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let start = std::time::Instant::now();
     let result = work();
     (result, (start.elapsed().as_secs_f64() * 1000.0).round() / 1000.0)
+}
+
+/// The word of an outcome in file and tables.
+fn word(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Named => "named",
+        Outcome::InClass => "in class",
+        Outcome::Partly => "partly",
+        Outcome::WithMore => "with more",
+        Outcome::WrongName => "wrong name",
+        Outcome::Adequate => "adequate",
+        Outcome::Unexplained => "unexplained",
+    }
 }

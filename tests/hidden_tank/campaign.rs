@@ -34,7 +34,8 @@ impl Asked {
             if self.hidden.is_empty() { "clean".to_owned() } else { self.hidden.join("+") };
         let mut name = format!("{hidden} x{} {} #{}", self.size, self.set.name(), self.seed);
         if self.scatter != SCATTER {
-            name.push_str(&format!(" scatter {}", self.scatter));
+            name += " scatter ";
+            name += &self.scatter.to_string();
         }
         name
     }

@@ -153,9 +153,9 @@ fn modelled(
         let at = |values: &[f64], i: usize| {
             super::instruments::between(values, i as f64 + shift_s / STEP_S)
         };
-        let roll = range.clone().map(|i| {
-            (at(&shown.roll_deg, i) - rows.roll_deg[i]).to_radians() / target.roll_sd
-        });
+        let roll = range
+            .clone()
+            .map(|i| (at(&shown.roll_deg, i) - rows.roll_deg[i]).to_radians() / target.roll_sd);
         let moment = range
             .clone()
             .map(|i| (at(&shown.force_n, i) - rows.force_n[i]) * ARM_M / MOMENT_NOISE_N_M);

@@ -27,9 +27,8 @@ pub(crate) fn minimise(
     let prior_sum = |x: &[f64]| {
         x.iter().zip(priors).map(|(x, (mean, sd))| ((x - mean) / sd).powi(2)).sum::<f64>()
     };
-    let data_sum = |parts: &[Part]| {
-        parts.iter().flat_map(|part| &part.residuals).map(|r| r * r).sum::<f64>()
-    };
+    let data_sum =
+        |parts: &[Part]| parts.iter().flat_map(|part| &part.residuals).map(|r| r * r).sum::<f64>();
     let mut sum = f64::INFINITY;
     let mut damping = 1e-3;
     for _ in 0..rounds {

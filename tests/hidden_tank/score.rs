@@ -44,26 +44,6 @@ pub(crate) enum Outcome {
     Unexplained,
 }
 
-impl Outcome {
-    /// The word in the tables and the outcome file.
-    pub(crate) fn word(self) -> &'static str {
-        match self {
-            Self::Named => "named",
-            Self::InClass => "in class",
-            Self::Partly => "partly",
-            Self::WithMore => "with more",
-            Self::WrongName => "wrong name",
-            Self::Adequate => "adequate",
-            Self::Unexplained => "unexplained",
-        }
-    }
-
-    /// It holds a name that is not there.
-    pub(crate) fn is_wrong(self) -> bool {
-        matches!(self, Self::WithMore | Self::WrongName)
-    }
-}
-
 /// Whether two effects are one class on a run set.
 pub(crate) fn in_class(one: &str, other: &str, set: RunSet) -> bool {
     one == other
@@ -102,9 +82,9 @@ pub(crate) fn score(
                 in_class(&cause.effect, truth, set) || cause.equivalent_to.contains(truth)
             })
         };
-        let shown = exact.or_else(told).or_else(|| {
-            hidden.iter().position(|truth| stands_for(&cause.effect, truth))
-        });
+        let shown = exact
+            .or_else(told)
+            .or_else(|| hidden.iter().position(|truth| stands_for(&cause.effect, truth)));
         match shown {
             Some(at) => found[at] = true,
             None => astray = true,

@@ -19,6 +19,7 @@ const FORCED_S: f64 = 22.0;
 
 /// The instants of a pass [s].
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::struct_field_names, reason = "each is an instant, and says its unit")]
 pub(crate) struct Timeline {
     /// Hands or rod take the model.
     pub(crate) taken_s: f64,
@@ -74,7 +75,8 @@ pub(crate) fn imposed(pass: &Pass, line: &Timeline, time_s: f64) -> Option<Impos
             let mut path = eased((time_s - line.taken_s) / HEELING_S, HEELING_S);
             path = path.map(|value| value * heel_rad);
             // A hand trembles at 1.3 Hz, and stops in the last second before it lets go.
-            let tremor_rad = 0.02_f64.to_radians() * f64::from(u8::from(time_s < line.start_s - 1.0));
+            let tremor_rad =
+                0.02_f64.to_radians() * f64::from(u8::from(time_s < line.start_s - 1.0));
             path[0] += tremor_rad * (8.2 * time_s).sin();
             Some(path)
         }

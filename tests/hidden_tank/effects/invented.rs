@@ -137,7 +137,7 @@ pub(super) const LOST_KEEL: Row = Row {
     hide: |values| {
         Acting::hidden(values, |v, at| {
             let lost_s = 3.0 + 4.0 * at.pass.chance[0];
-            let lost = (1.0 + ((at.since_start_s - lost_s) / 0.1).tanh()) / 2.0;
+            let lost = 0.5 + 0.5 * ((at.since_start_s - lost_s) / 0.1).tanh();
             v[0] * lost * at.base.b0 * at.rate
         })
     },

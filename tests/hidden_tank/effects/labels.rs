@@ -9,7 +9,13 @@ pub(super) const MISLABELLED: Row = Row {
     id: "run.mislabelled",
     symbols: &["kind [-]", "place [-]"],
     draw: |size, draw, _| {
-        let kind = if size < 0.75 { 1.0 } else if size < 1.5 { 0.0 } else { 2.0 };
+        let kind = if size < 0.75 {
+            1.0
+        } else if size < 1.5 {
+            0.0
+        } else {
+            2.0
+        };
         vec![kind, draw.between(0.0, 1.0)]
     },
     hide: |values| Box::new(Mislabelled { kind: values[0] as usize, place: values[1] }),

@@ -8,8 +8,8 @@ mod force_cell;
 mod invented;
 mod labels;
 mod restoring;
-mod roll_sensor;
 mod rig;
+mod roll_sensor;
 mod speed;
 mod water;
 

@@ -8,9 +8,7 @@ pub(super) const CUBIC: Row = Row {
     id: "restoring.cubic",
     symbols: &["K3/K [1/rad2]"],
     draw: |size, draw, _| vec![size * 0.5 * draw.sign()],
-    hide: |values| {
-        Acting::hidden(values, |v, at| -at.base.restoring * v[0] * at.roll.powi(3))
-    },
+    hide: |values| Acting::hidden(values, |v, at| -at.base.restoring * v[0] * at.roll.powi(3)),
 };
 
 /// `K k5 phi^5`; k5 0.2 to 5, middle 1.
@@ -18,9 +16,7 @@ pub(super) const QUINTIC: Row = Row {
     id: "restoring.quintic",
     symbols: &["K5/K [1/rad4]"],
     draw: |size, _, _| vec![size],
-    hide: |values| {
-        Acting::hidden(values, |v, at| -at.base.restoring * v[0] * at.roll.powi(5))
-    },
+    hide: |values| Acting::hidden(values, |v, at| -at.base.restoring * v[0] * at.roll.powi(5)),
 };
 
 /// `K k2 phi^2`; k2 within 0.2 either way, middle 0.1.
@@ -28,9 +24,7 @@ pub(super) const ASYMMETRIC: Row = Row {
     id: "restoring.asymmetric",
     symbols: &["K2/K [1/rad]"],
     draw: |size, draw, _| vec![size * 0.1 * draw.sign()],
-    hide: |values| {
-        Acting::hidden(values, |v, at| -at.base.restoring * v[0] * at.roll.powi(2))
-    },
+    hide: |values| Acting::hidden(values, |v, at| -at.base.restoring * v[0] * at.roll.powi(2)),
 };
 
 /// Static heel, `K (phi - heel)`; 0.1 to 1 degree, middle 0.32.
@@ -56,9 +50,7 @@ pub(super) const NATURAL_FREQUENCY: Row = Row {
     symbols: &["share [-]"],
     draw: |size, draw, _| vec![size * 0.022 * draw.sign()],
     hide: |values| {
-        Acting::hidden(values, |v, at| {
-            -at.base.restoring * ((1.0 + v[0]).powi(2) - 1.0) * at.roll
-        })
+        Acting::hidden(values, |v, at| -at.base.restoring * ((1.0 + v[0]).powi(2) - 1.0) * at.roll)
     },
 };
 

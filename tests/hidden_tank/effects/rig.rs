@@ -9,9 +9,7 @@ use crate::hidden_tank::plan::{Action, Pass};
 pub(super) const VIBRATION: Row = Row {
     id: "tank.carriage_vibration",
     symbols: &["amplitude at 2 m/s [rad]", "pitch [m]"],
-    draw: |size, draw, _| {
-        vec![size * 0.063_f64.to_radians(), 2.0 / draw.between(5.0, 15.0)]
-    },
+    draw: |size, draw, _| vec![size * 0.063_f64.to_radians(), 2.0 / draw.between(5.0, 15.0)],
     hide: |values| Box::new(Vibration { amplitude: values[0], pitch_m: values[1] }),
 };
 

@@ -80,9 +80,7 @@ pub(super) const RESTORING: Row = Row {
     symbols: &["c [-]"],
     draw: |size, draw, _| vec![size * 0.15 * draw.sign()],
     hide: |values| {
-        Acting::hidden(values, |v, at| {
-            -at.base.restoring * v[0] * at.froude.powi(2) * at.roll
-        })
+        Acting::hidden(values, |v, at| -at.base.restoring * v[0] * at.froude.powi(2) * at.roll)
     },
 };
 
