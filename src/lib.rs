@@ -8,11 +8,15 @@ pub mod roll;
 
 pub mod run;
 
+pub mod model;
+
 pub mod campaign;
 
 pub mod inverse;
 
 pub mod results;
+
+pub mod diagnosis;
 
 pub mod tank;
 

@@ -3,6 +3,7 @@
 mod bench;
 mod check;
 mod demo;
+mod diagnose;
 mod exit;
 mod failure;
 mod fresh_folder;
@@ -41,6 +42,7 @@ enum Command {
     Check(check::Arguments),
     Replay(replay::Arguments),
     Identify(identify::Arguments),
+    Diagnose(diagnose::Arguments),
     Report(report::Arguments),
     Simulate(simulate::Arguments),
     Import(import::Arguments),
@@ -58,6 +60,7 @@ pub fn run(line: &CommandLine, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Check(arguments) => check::run(arguments, out),
         Command::Replay(arguments) => replay::run(arguments, out),
         Command::Identify(arguments) => identify::run(arguments, out),
+        Command::Diagnose(arguments) => diagnose::run(arguments, out),
         Command::Report(arguments) => report::run(arguments, out),
         Command::Simulate(arguments) => simulate::run(arguments, out),
         Command::Import(arguments) => import::run(arguments, out),

@@ -3,6 +3,8 @@
 mod campaign_page;
 mod csv_tables;
 mod damping_table;
+mod diagnosis_json;
+mod diagnosis_text;
 mod document;
 mod field_units;
 pub(crate) mod figure;
@@ -19,6 +21,8 @@ use std::path::{Path, PathBuf};
 
 pub use csv_tables::csv_tables;
 pub use damping_table::damping_table;
+pub use diagnosis_json::diagnosis_json;
+pub use diagnosis_text::diagnosis_text;
 pub use json::{IDENTIFICATION_SCHEMA, identification_json};
 
 use crate::campaign::Campaign;

@@ -1,0 +1,47 @@
+//! `rolltank diagnose`: what the simulation gets wrong, its cause, and what mending it gains.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Exit, Failure};
+use crate::campaign;
+use crate::diagnosis::{self, Observation};
+use crate::pipeline::{self, Options};
+use crate::report;
+
+/// Show what the simulation gets wrong, name the cause, and measure what mending it gains
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Folder that holds campaign.toml
+    campaign: PathBuf,
+    /// Print JSON instead of sentences
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
+    let campaign = campaign::read(&arguments.campaign)?;
+    let mut observations = Vec::new();
+    let mut left_out = Vec::new();
+    let options = Options { keep_histories: false, ..Options::default() };
+    pipeline::replay(&campaign, &options, &mut |_| {}, &mut |run, _| {
+        match Observation::new(run, &campaign, observations.len()) {
+            Ok(observation) => observations.push(observation),
+            Err(reason) => left_out.push(format!("{}: {reason}", run.id)),
+        }
+        Ok(())
+    })?;
+    for reason in &left_out {
+        tracing::warn!("run left out of the diagnosis: {reason}");
+    }
+    let diagnosis = diagnosis::diagnose(observations);
+    let exit = if diagnosis.is_some() { Exit::Done } else { Exit::Incomplete };
+    if arguments.json {
+        out.write_all(report::diagnosis_json(diagnosis.as_ref()).as_bytes())?;
+    } else {
+        out.write_all(report::diagnosis_text(diagnosis.as_ref()).as_bytes())?;
+    }
+    Ok(exit)
+}

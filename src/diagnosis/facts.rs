@@ -1,0 +1,93 @@
+//! What a record shows without any model: its noise, its steps, lines in it, flat crests.
+
+use crate::model::{Facts, Line};
+use crate::run::Series;
+
+/// Standard deviation of the noise from fourth differences, which leave nothing of a smooth course
+/// and 70 times the variance of a white noise.
+pub(super) fn rough_noise(values: &[f64]) -> f64 {
+    let square: f64 = fourth_differences(values).iter().map(|d| d * d).sum();
+    (square / 70.0 / values.len().saturating_sub(4).max(1) as f64).sqrt()
+}
+
+fn fourth_differences(v: &[f64]) -> Vec<f64> {
+    v.windows(5).map(|v| v[0] - 4.0 * v[1] + 6.0 * v[2] - 4.0 * v[3] + v[4]).collect()
+}
+
+/// The angle at which the crests may be cut off: just below the largest reading.
+///
+/// A crest that is not cut spends a tenth of its half cycle within 1.2 % of its top.
+pub(super) fn flat_top(roll_rad: &[f64], noise_rad: f64) -> Option<f64> {
+    let top = roll_rad.iter().map(|r| r.abs()).fold(0.0, f64::max);
+    let near = roll_rad.iter().filter(|r| r.abs() > top - 5.0 * noise_rad - 1e-3 * top).count();
+    (near >= 8).then_some(top - 2.5 * noise_rad)
+}
+
+/// Facts of a roll record as recorded.
+pub(super) fn of(
+    roll: &Series,
+    quantum_rad: Option<f64>,
+    rolling_rad_s: f64,
+    froude: f64,
+) -> Facts {
+    let n = roll.time_s.len();
+    let sample_rate_hz = (n - 1) as f64 / (roll.time_s[n - 1] - roll.time_s[0]);
+    let line = line(&roll.value, sample_rate_hz, rolling_rad_s);
+    Facts { quantum_rad, line, n_samples: n, sample_rate_hz, froude }
+}
+
+/// Samples in which a line is sought; more say no more than that it is there.
+const LONGEST: usize = 4096;
+/// Least logarithm of a Bayes factor at which a line is worth telling.
+const LEAST: f64 = 12.0;
+
+/// The strongest line well above the roll's own harmonics.
+fn line(values: &[f64], rate_hz: f64, rolling_rad_s: f64) -> Option<Line> {
+    let differences = fourth_differences(&values[..values.len().min(LONGEST)]);
+    let n = differences.len();
+    if n < 64 {
+        return None;
+    }
+    let windowed: Vec<f64> = differences
+        .iter()
+        .enumerate()
+        .map(|(i, d)| d * (std::f64::consts::PI * (i as f64 + 0.5) / n as f64).sin().powi(2))
+        .collect();
+    let lowest_hz = (5.0 * rolling_rad_s / std::f64::consts::TAU).max(3.5);
+    let first = (lowest_hz * n as f64 / rate_hz).ceil() as usize;
+    let powers: Vec<f64> = (first..=n / 2)
+        .map(|bin| power(&windowed, std::f64::consts::TAU * bin as f64 / n as f64))
+        .collect();
+    if powers.len() < 32 {
+        return None;
+    }
+    let best = (0..powers.len()).max_by(|a, b| powers[*a].total_cmp(&powers[*b]))?;
+    let mut sorted = powers.clone();
+    let middle = sorted.len() / 2;
+    let median = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let mean = median / std::f64::consts::LN_2;
+    let excess = powers[best] / mean;
+    let log_bayes_factor = excess - (powers.len() as f64).ln() - 3.0;
+    if log_bayes_factor < LEAST {
+        return None;
+    }
+    // The Hann window passes half of an amplitude and 3/8 of a power.
+    let noise_sd = (mean / (0.375 * n as f64)).sqrt();
+    let amplitude_rad = 2.0 * (powers[best] / (0.25 * (n * n) as f64)).sqrt();
+    let amplitude_sd_rad = noise_sd * (2.0 / n as f64).sqrt();
+    let frequency_hz = (first + best) as f64 * rate_hz / n as f64;
+    Some(Line { frequency_hz, amplitude_rad, amplitude_sd_rad, log_bayes_factor })
+}
+
+/// Power at an angle per sample, less what fourth differences make of it.
+fn power(values: &[f64], angle: f64) -> f64 {
+    let (sin, cos) = angle.sin_cos();
+    let (mut c, mut s) = (1.0, 0.0);
+    let (mut re, mut im) = (0.0, 0.0);
+    for value in values {
+        re += value * c;
+        im += value * s;
+        (c, s) = (c * cos - s * sin, s * cos + c * sin);
+    }
+    (re * re + im * im) / (2.0 * (0.5 * angle).sin()).powi(8)
+}

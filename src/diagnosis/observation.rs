@@ -1,0 +1,193 @@
+//! One run as the diagnosis sees it: thinned records, circumstances, and where a fit starts.
+
+use super::facts;
+use crate::campaign::Campaign;
+use crate::inverse::forced::response::SteadyResponse;
+use crate::inverse::record::Record;
+use crate::model::imposed::{N_COURSE, N_HARMONICS};
+use crate::model::{Base, Circumstances, Facts};
+use crate::results::IdentifiedRun;
+use crate::run::{Run, RunKind, Series};
+
+/// A run ready to be fitted.
+#[derive(Debug, Clone)]
+pub struct Observation {
+    /// Id of the run in its campaign.
+    pub id: String,
+    /// Loading or appendage condition.
+    pub condition: String,
+    /// Where and when.
+    pub at: Circumstances,
+    /// What the record shows without a model.
+    pub facts: Facts,
+    /// Instant of time zero on the recording's time base [s].
+    pub origin_s: f64,
+    /// Times of the roll [s].
+    pub roll_time_s: Vec<f64>,
+    /// Roll as read [rad].
+    pub roll_rad: Vec<f64>,
+    /// Times of the moment [s]; empty when none was recorded.
+    pub moment_time_s: Vec<f64>,
+    /// Moment as read [N m].
+    pub moment_n_m: Vec<f64>,
+    /// Noise of one value of each channel, from neighbouring values [rad, N m].
+    pub rough_noise: [f64; 2],
+    /// What the fit of this run starts from: initial roll and rate, or the imposed course; then
+    /// the run's own zero offset.
+    pub start: Vec<f64>,
+    /// Base equation to start from.
+    pub base: Base,
+}
+
+/// Values of the moment channel a period.
+const MOMENTS_PER_PERIOD: f64 = 80.0;
+
+impl Observation {
+    /// Prepares a run of a campaign.
+    ///
+    /// # Errors
+    /// The reason, as a sentence, why the run takes no part.
+    pub fn new(run: &IdentifiedRun, campaign: &Campaign, order: usize) -> Result<Self, String> {
+        match run.run.kind {
+            RunKind::Decay => Self::decay(run, campaign, order),
+            RunKind::Forced => Self::forced(run, campaign, order),
+        }
+    }
+
+    fn decay(run: &IdentifiedRun, campaign: &Campaign, order: usize) -> Result<Self, String> {
+        let record = Record::new(&run.run.roll)?;
+        let known = &run.identification;
+        let start = vec![known.initial_roll_rad.mean, known.initial_roll_rate_rad_per_s.mean, 0.0];
+        let moment = moment(&run.run, campaign, record.origin_s, record.rough_frequency_rad_s);
+        let rolling_rad_s = known.natural_frequency_rad_s.mean;
+        Ok(Self::assemble(run, campaign, order, &record, moment, start, rolling_rad_s))
+    }
+
+    fn forced(run: &IdentifiedRun, campaign: &Campaign, order: usize) -> Result<Self, String> {
+        let restoring = campaign.hull.restoring_n_m_per_rad(&campaign.water);
+        let response = SteadyResponse::of(&run.run, restoring, campaign.exciter.as_ref())?;
+        let steady = response.steady.clone();
+        let record = Record::new(&Series {
+            time_s: run.run.roll.time_s[steady.clone()].to_vec(),
+            value: run.run.roll.value[steady].to_vec(),
+        })?;
+        let w = response.roll.frequency_rad_s.mean;
+        let shift_s = record.origin_s - run.run.start_s;
+        let mut start = vec![0.0; N_COURSE + 1];
+        start[0] = response.roll.mean;
+        for h in 0..N_HARMONICS.min(response.roll.pairs.len()) {
+            let (a, b) = response.roll.pairs[h];
+            let (sin, cos) = ((h + 1) as f64 * w * shift_s).sin_cos();
+            start[1 + 2 * h] = a * cos + b * sin;
+            start[2 + 2 * h] = b * cos - a * sin;
+        }
+        start[N_COURSE - 1] = w;
+        let last_s = record.origin_s + record.span_s();
+        let all = moment(&run.run, campaign, record.origin_s, w);
+        let inside = |t: &f64| *t >= 0.0 && *t <= last_s - record.origin_s;
+        let (time_s, value) = all
+            .time_s
+            .iter()
+            .zip(&all.value)
+            .filter(|(t, _)| inside(t))
+            .map(|(t, v)| (*t, *v))
+            .unzip();
+        let moment = Series { time_s, value };
+        if moment.time_s.len() < 30 {
+            return Err("its moment has fewer than 30 values while it is steady".to_owned());
+        }
+        Ok(Self::assemble(run, campaign, order, &record, moment, start, w))
+    }
+
+    fn assemble(
+        run: &IdentifiedRun,
+        campaign: &Campaign,
+        order: usize,
+        record: &Record,
+        moment: Series,
+        start: Vec<f64>,
+        rolling_rad_s: f64,
+    ) -> Self {
+        let known = &run.identification;
+        let w = known.natural_frequency_rad_s.mean;
+        let b1_per_s = known.damping.b1_per_s.mean.max(2e-4 * w);
+        let mean = record.roll_rad.iter().sum::<f64>() / record.roll_rad.len() as f64;
+        let amplitude_rad = record.roll_rad.iter().map(|r| (r - mean).abs()).fold(0.0, f64::max);
+        let noise_rad = facts::rough_noise(&record.roll_rad);
+        let n = run.run.roll.time_s.len();
+        let sample_rate_hz = (n - 1) as f64 / (run.run.roll.time_s[n - 1] - run.run.roll.time_s[0]);
+        let width_m = campaign.tank.width_m;
+        let at = Circumstances {
+            kind: run.run.kind,
+            froude: run.froude,
+            speed_m_s: run.speed_m_s.abs(),
+            natural_rad_s: w,
+            b1_per_s,
+            inertia_kg_m2: campaign.hull.inertia_kg_m2(&campaign.water, w),
+            amplitude_rad,
+            rolling_rad_s,
+            span_s: record.span_s(),
+            gravity_m_s2: campaign.water.gravity_m_s2,
+            clear_width_m: width_m.map(|width_m| width_m - campaign.hull.beam_m),
+            sample_rate_hz,
+            order,
+            has_moment: !moment.time_s.is_empty(),
+            n_runs: 1,
+            initial_roll_rad: record.roll_rad[0] - mean,
+            flat_top_rad: facts::flat_top(&record.roll_rad, noise_rad),
+        };
+        let moment_noise =
+            if moment.value.is_empty() { 1.0 } else { facts::rough_noise(&moment.value) };
+        Self {
+            id: run.id.clone(),
+            condition: run.condition.clone(),
+            facts: facts::of(&run.run.roll, record.quantum_rad, rolling_rad_s, run.froude),
+            at,
+            origin_s: record.origin_s,
+            roll_time_s: record.time_s.clone(),
+            roll_rad: record.roll_rad.clone(),
+            moment_time_s: moment.time_s,
+            moment_n_m: moment.value,
+            rough_noise: [noise_rad, moment_noise],
+            start,
+            base: Base {
+                natural_rad_s: w,
+                b1_per_s,
+                b3_s: known.damping.b3_s.mean,
+                log_scale: 0.0,
+            },
+        }
+    }
+}
+
+/// The moment channel as it reads, without any zero taken out, thinned by averaging.
+fn moment(run: &Run, campaign: &Campaign, origin_s: f64, rolling_rad_s: f64) -> Series {
+    let drive = &run.drive;
+    let n = drive.time_s.len();
+    if n < 30 {
+        return Series::default();
+    }
+    let rate_hz = (n - 1) as f64 / (drive.time_s[n - 1] - drive.time_s[0]);
+    let wanted_hz = MOMENTS_PER_PERIOD * rolling_rad_s / std::f64::consts::TAU;
+    let width = ((rate_hz / wanted_hz) as usize).max(1);
+    let mut thinned = Series::default();
+    for (times, values) in drive.time_s.chunks_exact(width).zip(drive.value.chunks_exact(width)) {
+        let count = width as f64;
+        let time_s = times.iter().sum::<f64>() / count;
+        let force = values.iter().sum::<f64>() / count;
+        let value = campaign
+            .exciter
+            .as_ref()
+            .map_or(force, |exciter| exciter.moment_n_m(force, roll_at(&run.roll, time_s)));
+        thinned.time_s.push(time_s - origin_s);
+        thinned.value.push(value);
+    }
+    thinned
+}
+
+fn roll_at(roll: &Series, time_s: f64) -> f64 {
+    let after = roll.time_s.partition_point(|t| *t < time_s).clamp(1, roll.time_s.len() - 1);
+    let (t0, t1) = (roll.time_s[after - 1], roll.time_s[after]);
+    let share = if t1 > t0 { ((time_s - t0) / (t1 - t0)).clamp(0.0, 1.0) } else { 1.0 };
+    roll.value[after - 1] + share * (roll.value[after] - roll.value[after - 1])
+}

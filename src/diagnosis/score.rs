@@ -1,0 +1,293 @@
+//! The score test: how much every effect of the table would explain, in one pass.
+
+use super::run_fit::ChannelNoise;
+use super::solve::{Layout, Marginal, gathered, log_mean_exp, marginal, scatters, solve};
+use super::survey::{Extension, Fit, Survey};
+use crate::model::effects;
+use crate::model::{Acts, Effect, Scope, Term};
+
+/// One effect with what it promises.
+#[derive(Debug, Clone)]
+pub(super) struct Scored {
+    /// Logarithm of the Bayes factor for adding it, linearised.
+    pub(super) log_bayes_factor: f64,
+    /// The effect with the strengths that the linearised model gives it.
+    pub(super) extension: Extension,
+}
+
+/// Effects that are tried on a model: those that some run shows and that are not in it.
+fn tried(survey: &Survey, fit: &Fit) -> Vec<&'static Effect> {
+    let known = |id: &str| fit.extensions.iter().any(|e| e.effect.id == id);
+    let mut kept: Vec<&'static Effect> = Vec::new();
+    for effect in effects::all() {
+        let shown = survey.runs.iter().any(|run| (effect.shows)(&run.at));
+        let twin = effect
+            .always_equivalent
+            .iter()
+            .any(|id| known(id) || kept.iter().any(|kept| kept.id == *id));
+        // The reading of a twin is the one that disturbs no equation.
+        let stands_back =
+            !effect.always_equivalent.is_empty() && !matches!(effect.acts, Acts::Roll(_));
+        let seen = matches!(effect.acts, Acts::Record(_));
+        if shown && !twin && !stands_back && !seen && !known(effect.id) {
+            kept.push(effect);
+        }
+    }
+    kept
+}
+
+/// One candidate: an effect with one of its shapes.
+#[derive(Clone)]
+struct Candidate {
+    effect: &'static Effect,
+    term: Term,
+    /// Place among the candidate columns of a run.
+    first: usize,
+}
+
+fn candidates(
+    effects: &[&'static Effect],
+    run: &crate::model::Circumstances,
+    first: usize,
+) -> Vec<Candidate> {
+    let mut next = first;
+    let mut all = Vec::new();
+    for effect in effects {
+        for shape in (effect.nodes)(run) {
+            let mut values = vec![0.0; effect.strengths.len()];
+            values.extend(shape);
+            all.push(Candidate { effect, term: Term { effect, values }, first: next });
+            next += effect.strengths.len();
+        }
+    }
+    all
+}
+
+/// What one set of columns brings.
+struct Brought {
+    log_bayes_factor: f64,
+    strengths: Vec<f64>,
+}
+
+/// Scores every effect that is not in the model yet, best first.
+pub(super) fn score(survey: &Survey, fit: &Fit, noise: &[ChannelNoise]) -> Vec<Scored> {
+    let tried = tried(survey, fit);
+    let (own, common): (Vec<_>, Vec<_>) =
+        tried.into_iter().partition(|effect| effect.scope == Scope::Run);
+    let largest = (0..survey.runs.len())
+        .max_by(|a, b| {
+            survey.runs[*a].at.amplitude_rad.total_cmp(&survey.runs[*b].at.amplitude_rad)
+        })
+        .unwrap_or(0);
+    let common = candidates(&common, &survey.runs[largest].at, 0);
+    let n_common = common.last().map_or(0, |c| c.first + c.effect.strengths.len());
+    let own: Vec<Vec<Candidate>> = survey
+        .runs
+        .iter()
+        .map(|run| {
+            let shown: Vec<_> = own.iter().copied().filter(|e| (e.shows)(&run.at)).collect();
+            candidates(&shown, &run.at, n_common)
+        })
+        .collect();
+    let summaries = survey.summaries(fit, noise, &|r| {
+        common.iter().chain(&own[r]).map(|candidate| candidate.term.clone()).collect()
+    });
+    let layout = Layout::new(survey, fit);
+    let n_conditions = survey.conditions.len();
+    // Columns: per condition one for every strength; a campaign's effect uses the first alone.
+    let is_shared: Vec<bool> = common
+        .iter()
+        .flat_map(|c| vec![c.effect.scope == Scope::Campaign; c.effect.strengths.len()])
+        .collect();
+    let mut logs: Vec<Vec<f64>> = vec![Vec::new(); common.len()];
+    let mut own_logs: Vec<Vec<Vec<f64>>> =
+        own.iter().map(|all| vec![Vec::new(); all.len()]).collect();
+    let mut best_strengths: Vec<(f64, Vec<f64>)> =
+        vec![(f64::NEG_INFINITY, Vec::new()); common.len()];
+    let mut own_strengths: Vec<Vec<(f64, Vec<f64>)>> =
+        own.iter().map(|all| vec![(f64::NEG_INFINITY, Vec::new()); all.len()]).collect();
+    let mut base_logs = Vec::new();
+    for scatter in scatters(survey) {
+        let base = solve(survey, fit, &summaries, scatter).log_evidence;
+        base_logs.push(base);
+        let marginals: Vec<Marginal> = (0..survey.runs.len())
+            .map(|r| marginal(survey, fit, r, &summaries[r], &scatter))
+            .collect();
+        let place = |run: usize, column: usize| -> Option<usize> {
+            let condition = survey.condition_of[run];
+            let at = |condition: usize| column * n_conditions + condition;
+            (column < n_common).then(|| at(if is_shared[column] { 0 } else { condition }))
+        };
+        let all = gathered(survey, fit, &layout, &marginals, n_common * n_conditions, &place);
+        let left = all.eliminate(layout.n).rest;
+        for (c, candidate) in common.iter().enumerate() {
+            let copies = if candidate.effect.scope == Scope::Campaign { 1 } else { n_conditions };
+            let columns: Vec<usize> = (0..copies)
+                .flat_map(|copy| {
+                    (0..candidate.effect.strengths.len())
+                        .map(move |k| (candidate.first + k) * n_conditions + copy)
+                })
+                .collect();
+            let brought = bring(&left, &columns, candidate.effect);
+            logs[c].push(base + brought.log_bayes_factor);
+            if base + brought.log_bayes_factor > best_strengths[c].0 {
+                best_strengths[c] = (base + brought.log_bayes_factor, brought.strengths);
+            }
+        }
+        for r in 0..survey.runs.len() {
+            if own[r].is_empty() {
+                continue;
+            }
+            let n_own = own[r].last().map_or(0, |c| c.first + c.effect.strengths.len()) - n_common;
+            let place = |run: usize, column: usize| -> Option<usize> {
+                (run == r && column >= n_common).then(|| column - n_common)
+            };
+            let all = gathered(survey, fit, &layout, &marginals, n_own, &place);
+            let left = all.eliminate(layout.n).rest;
+            for (c, candidate) in own[r].iter().enumerate() {
+                let columns: Vec<usize> = (0..candidate.effect.strengths.len())
+                    .map(|k| candidate.first + k - n_common)
+                    .collect();
+                let brought = bring(&left, &columns, candidate.effect);
+                own_logs[r][c].push(brought.log_bayes_factor);
+                if base + brought.log_bayes_factor > own_strengths[r][c].0 {
+                    own_strengths[r][c] = (base + brought.log_bayes_factor, brought.strengths);
+                }
+            }
+        }
+    }
+    let none = log_mean_exp(&base_logs);
+    let mut scored = common_scores(survey, &common, &logs, &best_strengths, none);
+    scored.extend(own_scores(survey, &own, &own_logs, &own_strengths, &base_logs, none));
+    scored.sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
+    scored
+}
+
+/// Adds columns with their priors to what the model leaves.
+fn bring(left: &super::elimination::Products, columns: &[usize], effect: &Effect) -> Brought {
+    let mut picked = columns.to_vec();
+    picked.push(left.n() - 1);
+    let mut products = left.picked(&picked);
+    let n = columns.len();
+    let mut log_precision = 0.0;
+    for i in 0..n {
+        let sd = effect.strengths[i % effect.strengths.len()].typical;
+        products.add(i, i, sd.powi(-2));
+        log_precision -= 2.0 * sd.ln();
+    }
+    let before = products.at(n, n);
+    let eliminated = products.eliminate(n);
+    let gain = before - eliminated.rest.at(0, 0);
+    Brought {
+        log_bayes_factor: 0.5 * (gain - eliminated.log_determinant + log_precision),
+        strengths: eliminated.back(&[]),
+    }
+}
+
+fn extension(
+    survey: &Survey,
+    candidate: &Candidate,
+    strengths: &[f64],
+    slot_of: Vec<Option<usize>>,
+) -> Extension {
+    let n = candidate.effect.strengths.len();
+    let slots: Vec<Vec<f64>> = strengths
+        .chunks(n)
+        .map(|own| own.iter().chain(&candidate.term.values[n..]).copied().collect())
+        .collect();
+    let centres = slots
+        .iter()
+        .map(|values| (0..values.len()).map(|k| if k < n { 0.0 } else { values[k] }).collect())
+        .collect();
+    debug_assert_eq!(slot_of.len(), survey.runs.len());
+    Extension { effect: candidate.effect, slots, centres, slot_of }
+}
+
+fn common_scores(
+    survey: &Survey,
+    common: &[Candidate],
+    logs: &[Vec<f64>],
+    strengths: &[(f64, Vec<f64>)],
+    none: f64,
+) -> Vec<Scored> {
+    let mut scored = Vec::new();
+    let mut start = 0;
+    while start < common.len() {
+        let effect = common[start].effect;
+        let end = start + common[start..].iter().take_while(|c| c.effect.id == effect.id).count();
+        let each: Vec<f64> = (start..end).map(|c| log_mean_exp(&logs[c])).collect();
+        let best = (start..end).max_by(|a, b| strengths[*a].0.total_cmp(&strengths[*b].0));
+        let best = best.unwrap_or(start);
+        let slot_of = (0..survey.runs.len())
+            .map(|r| {
+                let slot = if effect.scope == Scope::Campaign { 0 } else { survey.condition_of[r] };
+                (effect.shows)(&survey.runs[r].at).then_some(slot)
+            })
+            .collect();
+        scored.push(Scored {
+            log_bayes_factor: log_mean_exp(&each) - none,
+            extension: extension(survey, &common[best], &strengths[best].1, slot_of),
+        });
+        start = end;
+    }
+    scored
+}
+
+/// Effects that each run has of its own: any run may have it or not.
+fn own_scores(
+    survey: &Survey,
+    own: &[Vec<Candidate>],
+    logs: &[Vec<Vec<f64>>],
+    strengths: &[Vec<(f64, Vec<f64>)>],
+    base_logs: &[f64],
+    none: f64,
+) -> Vec<Scored> {
+    let mut ids: Vec<&'static str> = Vec::new();
+    for candidate in own.iter().flatten() {
+        if !ids.contains(&candidate.effect.id) {
+            ids.push(candidate.effect.id);
+        }
+    }
+    let mut scored = Vec::new();
+    for id in ids {
+        let mut totals = base_logs.to_vec();
+        let mut slots: Vec<Option<usize>> = vec![None; survey.runs.len()];
+        let mut chosen: Option<Extension> = None;
+        for r in 0..survey.runs.len() {
+            let nodes: Vec<usize> =
+                (0..own[r].len()).filter(|c| own[r][*c].effect.id == id).collect();
+            let Some(best) = nodes
+                .iter()
+                .copied()
+                .max_by(|a, b| strengths[r][*a].0.total_cmp(&strengths[r][*b].0))
+            else {
+                continue;
+            };
+            let per_scatter: Vec<f64> = (0..base_logs.len())
+                .map(|h| log_mean_exp(&nodes.iter().map(|c| logs[r][*c][h]).collect::<Vec<_>>()))
+                .collect();
+            // One run in two may have it, whatever the others have.
+            for (total, log) in totals.iter_mut().zip(&per_scatter) {
+                *total += log_mean_exp(&[0.0, *log]);
+            }
+            let weighted: Vec<f64> =
+                per_scatter.iter().zip(base_logs).map(|(log, base)| log + base).collect();
+            if log_mean_exp(&weighted) - none > 1.0 {
+                let one = extension(survey, &own[r][best], &strengths[r][best].1, slots.clone());
+                let whole = chosen.get_or_insert_with(|| Extension {
+                    slots: Vec::new(),
+                    centres: Vec::new(),
+                    ..one.clone()
+                });
+                slots[r] = Some(whole.slots.len());
+                whole.slots.extend(one.slots);
+                whole.centres.extend(one.centres);
+            }
+        }
+        if let Some(mut extension) = chosen {
+            extension.slot_of = slots;
+            scored.push(Scored { log_bayes_factor: log_mean_exp(&totals) - none, extension });
+        }
+    }
+    scored
+}

@@ -1,0 +1,287 @@
+//! What an effect is: its equation as functions of an instant, its parameters, its scope.
+
+use super::free::History;
+use super::imposed::Course;
+use crate::run::RunKind;
+
+/// One number of an effect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameter {
+    /// Symbol, as the equation writes it.
+    pub symbol: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Standard deviation of its normal prior about nil, or about its node for a shape.
+    pub typical: f64,
+    /// Physical range; an effect outside is not named.
+    pub range: [f64; 2],
+}
+
+impl Parameter {
+    /// A parameter.
+    pub const fn new(
+        symbol: &'static str,
+        unit: &'static str,
+        typical: f64,
+        range: [f64; 2],
+    ) -> Self {
+        Self { symbol, unit, typical, range }
+    }
+}
+
+/// The part of the simulation that an effect belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layer {
+    /// Moment with the roll rate.
+    Damping,
+    /// Moment with the roll.
+    Restoring,
+    /// Moment with the roll acceleration.
+    Inertia,
+    /// The oscillator rod.
+    Exciter,
+    /// The measuring chain.
+    Instrument,
+    /// Tank, carriage and handling.
+    Tank,
+}
+
+/// What one set of an effect's parameters covers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scope {
+    /// The whole campaign.
+    Campaign,
+    /// Each condition has its own.
+    Condition,
+    /// Each run has its own.
+    Run,
+}
+
+/// Where and when a run was made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Circumstances {
+    /// Decay or forced.
+    pub kind: RunKind,
+    /// Froude number [-].
+    pub froude: f64,
+    /// Carriage speed [m/s].
+    pub speed_m_s: f64,
+    /// Natural frequency [rad/s] as identified.
+    pub natural_rad_s: f64,
+    /// Linear damping [1/s] as identified, at least a hundredth of a per cent of critical.
+    pub b1_per_s: f64,
+    /// Total inertia `K/w^2` [kg m2].
+    pub inertia_kg_m2: f64,
+    /// Largest roll [rad].
+    pub amplitude_rad: f64,
+    /// Frequency of the excitation [rad/s]; the natural one in a decay.
+    pub rolling_rad_s: f64,
+    /// Length [s].
+    pub span_s: f64,
+    /// Gravity [m/s2].
+    pub gravity_m_s2: f64,
+    /// Clear water between both tank walls and both sides of the model [m], where known.
+    pub clear_width_m: Option<f64>,
+    /// Sample rate of the roll channel [Hz].
+    pub sample_rate_hz: f64,
+    /// Place in the order of runs.
+    pub order: usize,
+    /// Whether the exciting moment was recorded.
+    pub has_moment: bool,
+    /// Runs of the campaign.
+    pub n_runs: usize,
+    /// Roll at the start [rad].
+    pub initial_roll_rad: f64,
+    /// Angle [rad] at which several crests in a row are flat, if any.
+    pub flat_top_rad: Option<f64>,
+}
+
+/// What a roll record shows without any model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Facts {
+    /// Step between its values [rad], where coarse enough to be seen.
+    pub quantum_rad: Option<f64>,
+    /// A line in its noise.
+    pub line: Option<Line>,
+    /// Samples.
+    pub n_samples: usize,
+    /// Sample rate [Hz].
+    pub sample_rate_hz: f64,
+    /// Froude number of the run [-].
+    pub froude: f64,
+}
+
+/// One frequency that stands out of the noise of a channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Line {
+    /// Frequency as it shows [Hz].
+    pub frequency_hz: f64,
+    /// Amplitude [rad].
+    pub amplitude_rad: f64,
+    /// Standard deviation of the amplitude [rad].
+    pub amplitude_sd_rad: f64,
+    /// Logarithm of the Bayes factor against none [-].
+    pub log_bayes_factor: f64,
+}
+
+/// What an effect makes of a record alone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Seen {
+    /// Logarithm of the Bayes factor for the effect in this run [-].
+    pub log_bayes_factor: f64,
+    /// Mean and standard deviation of each strength.
+    pub values: Vec<(f64, f64)>,
+}
+
+/// Earlier motion of a run.
+#[derive(Debug, Clone, Copy)]
+pub enum Past<'a> {
+    /// A decay: at rest before its start.
+    Free(&'a History),
+    /// A course that the rod imposes, ever since.
+    Imposed(&'a Course),
+}
+
+impl Past<'_> {
+    /// Roll [rad] and roll rate [rad/s] at an earlier time [s].
+    pub fn at(&self, time_s: f64) -> [f64; 2] {
+        match self {
+            Self::Free(history) => history.at(time_s),
+            Self::Imposed(course) => {
+                let [roll, rate, _] = course.at(time_s);
+                [roll, rate]
+            }
+        }
+    }
+}
+
+/// The motion at one instant.
+#[derive(Debug, Clone, Copy)]
+pub struct Instant<'a> {
+    /// Time since the start of the run [s].
+    pub time_s: f64,
+    /// Roll [rad].
+    pub roll_rad: f64,
+    /// Roll rate [rad/s].
+    pub rate_rad_per_s: f64,
+    /// Roll acceleration [rad/s2]; in a decay, that of the base equation.
+    pub acceleration_rad_per_s2: f64,
+    /// Exciting moment [N m].
+    pub moment_n_m: f64,
+    /// What came before.
+    pub past: Past<'a>,
+    /// The run.
+    pub run: &'a Circumstances,
+}
+
+/// A function of the instant and the parameters, strengths first, then shapes.
+pub type Law = fn(&Instant<'_>, &[f64]) -> f64;
+
+/// States of an effect that remembers.
+#[derive(Debug, Clone, Copy)]
+pub struct Lag {
+    /// Number of states, at most [`MOST_LAGS`].
+    pub n_states: usize,
+    /// Slopes of the states.
+    pub slope: fn(&Instant<'_>, &[f64], &[f64]) -> [f64; MOST_LAGS],
+    /// Moment per unit inertia [rad/s2] of the states.
+    pub moment: fn(&Instant<'_>, &[f64], &[f64]) -> f64,
+}
+
+/// Most states that an effect may have.
+pub const MOST_LAGS: usize = 2;
+
+/// Where an effect enters.
+#[derive(Debug, Clone, Copy)]
+pub enum Acts {
+    /// Moment per unit inertia [rad/s2] on the right-hand side.
+    Moment(Law),
+    /// Share added to the inertia [-].
+    Inertia(Law),
+    /// Moment of states that follow the motion.
+    Lagging(Lag),
+    /// What the roll channel adds [rad], sample by sample in order of time.
+    Roll(fn(&[Instant<'_>], &[f64]) -> Vec<f64>),
+    /// What the moment channel adds [N m].
+    Drive(Law),
+    /// Seen in the record alone; it disturbs no estimate but the noise.
+    Record(fn(&Facts) -> Option<Seen>),
+}
+
+/// One extension of the simulation model.
+#[derive(Debug, Clone, Copy)]
+pub struct Effect {
+    /// Name of the contract.
+    pub id: &'static str,
+    /// Layer.
+    pub layer: Layer,
+    /// Equation, as the field writes it.
+    pub equation: &'static str,
+    /// Parameters that are nil without the effect and enter linearly when small.
+    pub strengths: &'static [Parameter],
+    /// Parameters that shape it.
+    pub shapes: &'static [Parameter],
+    /// Shapes to start from.
+    pub nodes: fn(&Circumstances) -> Vec<Vec<f64>>,
+    /// What one set of parameters covers.
+    pub scope: Scope,
+    /// Whether a run can show it.
+    pub shows: fn(&Circumstances) -> bool,
+    /// Where it enters.
+    pub acts: Acts,
+    /// Effects that no run of a roll test could part from it.
+    pub always_equivalent: &'static [&'static str],
+    /// Source.
+    pub reference: &'static str,
+}
+
+impl Effect {
+    /// Number of parameters of one set.
+    pub fn n_parameters(&self) -> usize {
+        self.strengths.len() + self.shapes.len()
+    }
+
+    /// Parameter number `k`, strengths first.
+    pub fn parameter(&self, k: usize) -> &'static Parameter {
+        if k < self.strengths.len() {
+            &self.strengths[k]
+        } else {
+            &self.shapes[k - self.strengths.len()]
+        }
+    }
+}
+
+/// No shape: one node without numbers.
+pub fn one_node(_: &Circumstances) -> Vec<Vec<f64>> {
+    vec![Vec::new()]
+}
+
+/// Nodes of a single shape.
+pub fn each(values: &[f64]) -> Vec<Vec<f64>> {
+    values.iter().map(|v| vec![*v]).collect()
+}
+
+/// Every run shows it.
+pub fn any_run(_: &Circumstances) -> bool {
+    true
+}
+
+/// Only a decay shows it.
+pub fn decays(run: &Circumstances) -> bool {
+    run.kind == RunKind::Decay
+}
+
+/// Only a forced run shows it.
+pub fn forced(run: &Circumstances) -> bool {
+    run.kind == RunKind::Forced
+}
+
+/// Only a run under way shows it.
+pub fn under_way(run: &Circumstances) -> bool {
+    run.froude > 0.01
+}
+
+/// Only a run with a recorded moment shows it.
+pub fn with_moment(run: &Circumstances) -> bool {
+    run.has_moment
+}

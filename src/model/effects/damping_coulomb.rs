@@ -1,0 +1,18 @@
+//! Coulomb friction of the bearings, the same at every rate.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, each};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "damping.coulomb",
+    layer: Layer::Damping,
+    equation: "f tanh(phi'/ve), f = Mf/(I+dI)",
+    strengths: &[Parameter::new("f", "rad/s2", 0.01, [0.0, 0.1])],
+    shapes: &[Parameter::new("ve", "rad/s", 0.01, [0.002, 0.1])],
+    nodes: |_| each(&[0.01, 0.04]),
+    scope: Scope::Campaign,
+    shows: any_run,
+    acts: Acts::Moment(|i, p| -p[0] * (i.rate_rad_per_s / p[1]).tanh()),
+    always_equivalent: &[],
+    reference: "Lelas & Pezer 2025; Pennestri et al. 2016",
+};

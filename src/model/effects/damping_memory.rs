@@ -1,0 +1,28 @@
+//! Radiation memory: waves made earlier still press on the hull.
+
+use crate::model::effect::{
+    Acts, Effect, Instant, Lag, Layer, MOST_LAGS, Parameter, Scope, any_run,
+};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "damping.memory",
+    layer: Layer::Damping,
+    equation: "mu(s) = bm a1 s/(s^2 + a1 s + (q w)^2) phi'",
+    strengths: &[Parameter::new("bm", "1/s", 0.15, [0.0, 0.8])],
+    shapes: &[
+        Parameter::new("q", "-", 0.15, [0.6, 2.0]),
+        Parameter::new("a1", "1/s", 2.0, [1.0, 15.0]),
+    ],
+    nodes: |_| vec![vec![0.9, 5.0], vec![1.1, 5.0], vec![1.3, 5.0]],
+    scope: Scope::Condition,
+    shows: any_run,
+    acts: Acts::Lagging(Lag { n_states: 2, slope, moment: |_, p, z| -p[0] * p[2] * z[1] }),
+    always_equivalent: &[],
+    reference: "Cummins 1962; Perez & Fossen 2008",
+};
+
+fn slope(i: &Instant<'_>, p: &[f64], z: &[f64]) -> [f64; MOST_LAGS] {
+    let own_rad_s = p[1] * i.run.natural_rad_s;
+    [z[1], i.rate_rad_per_s - p[2] * z[1] - own_rad_s * own_rad_s * z[0]]
+}

@@ -1,0 +1,18 @@
+//! Quadratic damping: eddies and bilge keels drag with the square of the rate.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "damping.quadratic",
+    layer: Layer::Damping,
+    equation: "b2 phi'|phi'|",
+    strengths: &[Parameter::new("b2", "1/rad", 0.4, [0.0, 2.0])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Condition,
+    shows: any_run,
+    acts: Acts::Moment(|i, p| -p[0] * i.rate_rad_per_s * i.rate_rad_per_s.abs()),
+    always_equivalent: &[],
+    reference: "ITTC 7.5-02-07-04.5",
+};

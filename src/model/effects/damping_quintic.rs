@@ -1,0 +1,18 @@
+//! Quintic damping: the largest swings alone are damped more.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "damping.quintic",
+    layer: Layer::Damping,
+    equation: "b5 phi'^5",
+    strengths: &[Parameter::new("b5", "s3", 0.05, [0.0, 0.5])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Condition,
+    shows: any_run,
+    acts: Acts::Moment(|i, p| -p[0] * i.rate_rad_per_s.powi(5)),
+    always_equivalent: &[],
+    reference: "Igbadumhe et al. 2020",
+};

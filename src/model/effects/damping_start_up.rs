@@ -1,0 +1,21 @@
+//! The flow of the first swings is not yet that of a rolling model.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, decays, each};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "damping.start_up",
+    layer: Layer::Damping,
+    equation: "-be b1 exp(-t/T) phi'",
+    strengths: &[Parameter::new("be", "-", 0.3, [-0.3, 0.9])],
+    shapes: &[Parameter::new("T", "s", 0.7, [0.3, 6.0])],
+    nodes: |run| {
+        let period_s = std::f64::consts::TAU / run.natural_rad_s;
+        each(&[period_s, 2.0 * period_s])
+    },
+    scope: Scope::Condition,
+    shows: decays,
+    acts: Acts::Moment(|i, p| p[0] * i.run.b1_per_s * (-i.time_s / p[1]).exp() * i.rate_rad_per_s),
+    always_equivalent: &[],
+    reference: "van 't Veer & Fathi 2010; Zhao et al. 2016",
+};

@@ -1,0 +1,18 @@
+//! The arm of the rod shortens with the roll and the moment is taken as if it did not.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, forced, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "exciter.arm_geometry",
+    layer: Layer::Exciter,
+    equation: "M (1 + s (1/cos(phi) - 1))",
+    strengths: &[Parameter::new("s", "-", 1.0, [0.3, 1.7])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Campaign,
+    shows: forced,
+    acts: Acts::Drive(|i, p| p[0] * i.moment_n_m * (1.0 / i.roll_rad.cos() - 1.0)),
+    always_equivalent: &[],
+    reference: "geometry of the rig",
+};

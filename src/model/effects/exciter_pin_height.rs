@@ -1,0 +1,18 @@
+//! The pin joint lies above or below the roll axis.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, forced, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "exciter.pin_height",
+    layer: Layer::Exciter,
+    equation: "M (1 + (h/l) phi)",
+    strengths: &[Parameter::new("h/l", "-", 0.25, [-0.9, 0.9])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Campaign,
+    shows: forced,
+    acts: Acts::Drive(|i, p| p[0] * i.moment_n_m * i.roll_rad),
+    always_equivalent: &[],
+    reference: "geometry of the rig",
+};

@@ -1,0 +1,18 @@
+//! The rod and what hangs on it are moved by the load cell as well.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, forced, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "exciter.rod_inertia",
+    layer: Layer::Exciter,
+    equation: "M + r (I+dI) phi''",
+    strengths: &[Parameter::new("r", "-", 0.01, [0.0, 0.06])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Campaign,
+    shows: forced,
+    acts: Acts::Drive(|i, p| p[0] * i.run.inertia_kg_m2 * i.acceleration_rad_per_s2),
+    always_equivalent: &[],
+    reference: "mechanics",
+};

@@ -1,0 +1,18 @@
+//! Added inertia that changes with the roll angle.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "inertia.amplitude",
+    layer: Layer::Inertia,
+    equation: "(1 + a phi^2) phi''",
+    strengths: &[Parameter::new("a", "1/rad2", 0.5, [-3.0, 3.0])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Condition,
+    shows: any_run,
+    acts: Acts::Inertia(|i, p| p[0] * i.roll_rad.powi(2)),
+    always_equivalent: &[],
+    reference: "Zhao et al. 2016",
+};

@@ -1,0 +1,38 @@
+//! A line that is there whatever the model does, as mains make it.
+
+use crate::model::effect::{Acts, Effect, Facts, Layer, Parameter, Scope, Seen, any_run, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "instrument.hum",
+    layer: Layer::Instrument,
+    equation: "phi + h sin(2 pi f t)",
+    strengths: &[
+        Parameter::new("h", "rad", 0.001, [1e-05, 0.02]),
+        Parameter::new("f", "Hz", 50.0, [0.0, 1000.0]),
+    ],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Campaign,
+    shows: any_run,
+    acts: Acts::Record(seen),
+    always_equivalent: &[],
+    reference: "sampling theory: mains alias",
+};
+
+/// A line in a run at rest is hum; at speed it may be the carriage, which another effect judges.
+fn seen(facts: &Facts) -> Option<Seen> {
+    let line = facts.line?;
+    let values = vec![(line.amplitude_rad, line.amplitude_sd_rad), (line.frequency_hz, 0.05)];
+    let mains = [50.0, 60.0, 100.0].map(|hz| folded(hz, facts.sample_rate_hz));
+    let is_mains = mains.iter().any(|hz| (hz - line.frequency_hz).abs() < 0.3);
+    let log_bayes_factor =
+        if is_mains || facts.froude < 0.01 { line.log_bayes_factor } else { -1.0 };
+    Some(Seen { log_bayes_factor, values })
+}
+
+/// Where a frequency shows when sampled at `rate_hz`.
+fn folded(hz: f64, rate_hz: f64) -> f64 {
+    let rest = hz.rem_euclid(rate_hz);
+    rest.min(rate_hz - rest)
+}

@@ -1,0 +1,18 @@
+//! The roll channel leaks into the moment channel.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, one_node, with_moment};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "instrument.moment_from_roll",
+    layer: Layer::Instrument,
+    equation: "M + c phi",
+    strengths: &[Parameter::new("c", "N m/rad", 0.5, [-5.0, 5.0])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Campaign,
+    shows: with_moment,
+    acts: Acts::Drive(|i, p| p[0] * i.roll_rad),
+    always_equivalent: &[],
+    reference: "crosstalk of bridge and potentiometer",
+};

@@ -1,0 +1,18 @@
+//! The moment channel leaks into the roll channel.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, forced, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "instrument.roll_from_moment",
+    layer: Layer::Instrument,
+    equation: "phi + c M",
+    strengths: &[Parameter::new("c", "rad/(N m)", 0.0003, [-0.003, 0.003])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Campaign,
+    shows: forced,
+    acts: Acts::Roll(|all, p| all.iter().map(|i| p[0] * i.moment_n_m).collect()),
+    always_equivalent: &[],
+    reference: "crosstalk of bridge and potentiometer",
+};

@@ -1,0 +1,34 @@
+//! A low-pass filter makes the roll channel lag.
+
+use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, any_run, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "instrument.roll_lag",
+    layer: Layer::Instrument,
+    equation: "tau z' = phi - z",
+    strengths: &[Parameter::new("tau", "s", 0.015, [0.0, 0.09])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Campaign,
+    shows: any_run,
+    acts: Acts::Roll(lag),
+    always_equivalent: &[],
+    reference: "filter theory",
+};
+
+/// First-order lag of a course that is straight between samples.
+fn lag(all: &[Instant<'_>], p: &[f64]) -> Vec<f64> {
+    let tau_s = p[0].max(0.0);
+    let Some(first) = all.first() else { return Vec::new() };
+    let mut behind = -tau_s * first.rate_rad_per_s;
+    let mut lost = vec![behind];
+    for pair in all.windows(2) {
+        let step_s = pair[1].time_s - pair[0].time_s;
+        let slope = (pair[1].roll_rad - pair[0].roll_rad) / step_s;
+        let fades = if tau_s > 0.0 { (-step_s / tau_s).exp() } else { 0.0 };
+        behind = -tau_s * slope + (behind + tau_s * slope) * fades;
+        lost.push(behind);
+    }
+    lost
+}

@@ -1,0 +1,18 @@
+//! The roll channel does not read nil upright.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "instrument.roll_offset",
+    layer: Layer::Instrument,
+    equation: "phi + e0",
+    strengths: &[Parameter::new("e0", "rad", 0.003, [-0.05, 0.05])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Campaign,
+    shows: any_run,
+    acts: Acts::Roll(|all, p| vec![p[0]; all.len()]),
+    always_equivalent: &["restoring.heel"],
+    reference: "calibration",
+};

@@ -1,0 +1,18 @@
+//! Restoring that differs between port and starboard.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "restoring.asymmetric",
+    layer: Layer::Restoring,
+    equation: "w^2 k2 phi^2",
+    strengths: &[Parameter::new("k2", "1/rad", 0.15, [-1.0, 1.0])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Condition,
+    shows: any_run,
+    acts: Acts::Moment(|i, p| -i.run.natural_rad_s.powi(2) * p[0] * i.roll_rad.powi(2)),
+    always_equivalent: &[],
+    reference: "hydrostatics",
+};

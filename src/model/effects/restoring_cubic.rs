@@ -1,0 +1,18 @@
+//! Cubic restoring of a hull whose sides are not those of a circle.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "restoring.cubic",
+    layer: Layer::Restoring,
+    equation: "w^2 k3 phi^3",
+    strengths: &[Parameter::new("k3", "1/rad2", 0.7, [-3.0, 3.0])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Condition,
+    shows: any_run,
+    acts: Acts::Moment(|i, p| -i.run.natural_rad_s.powi(2) * p[0] * i.roll_rad.powi(3)),
+    always_equivalent: &[],
+    reference: "wall-sided formula",
+};

@@ -1,0 +1,34 @@
+//! Water inside the hull with a free surface.
+
+use crate::model::effect::{
+    Acts, Effect, Instant, Lag, Layer, MOST_LAGS, Parameter, Scope, any_run,
+};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "restoring.free_surface",
+    layer: Layer::Restoring,
+    equation: "psi'' + 2 z wt psi' + wt^2 (psi + phi) = 0, moment -kt w^2 psi",
+    strengths: &[Parameter::new("kt", "-", 0.05, [0.0, 0.4])],
+    shapes: &[
+        Parameter::new("wt/w", "-", 0.1, [0.3, 1.4]),
+        Parameter::new("z", "-", 0.05, [0.005, 0.6]),
+    ],
+    nodes: |_| [0.45, 0.6, 0.75, 0.9, 1.1].map(|share| vec![share, 0.08]).to_vec(),
+    scope: Scope::Campaign,
+    shows: any_run,
+    acts: Acts::Lagging(Lag { n_states: 2, slope, moment }),
+    always_equivalent: &[],
+    reference: "McTaggart 2011; Moaleji & Greig 2007",
+};
+
+/// Rise of the surface against the tank `psi + phi`, level at release, and the surface's rate.
+fn slope(i: &Instant<'_>, p: &[f64], z: &[f64]) -> [f64; MOST_LAGS] {
+    let own_rad_s = p[1] * i.run.natural_rad_s;
+    let rate = z[1];
+    [rate + i.rate_rad_per_s, -2.0 * p[2] * own_rad_s * rate - own_rad_s * own_rad_s * z[0]]
+}
+
+fn moment(i: &Instant<'_>, p: &[f64], z: &[f64]) -> f64 {
+    -i.run.natural_rad_s.powi(2) * p[0] * (z[0] - i.roll_rad)
+}

@@ -1,0 +1,18 @@
+//! A static heel: the model rests at another angle than upright.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "restoring.heel",
+    layer: Layer::Restoring,
+    equation: "w^2 (phi - phis)",
+    strengths: &[Parameter::new("phis", "rad", 0.004, [-0.05, 0.05])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Campaign,
+    shows: any_run,
+    acts: Acts::Moment(|i, p| i.run.natural_rad_s.powi(2) * p[0]),
+    always_equivalent: &["instrument.roll_offset"],
+    reference: "hydrostatics",
+};

@@ -1,0 +1,18 @@
+//! Quintic restoring: the largest angles alone are held harder.
+
+use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "restoring.quintic",
+    layer: Layer::Restoring,
+    equation: "w^2 k5 phi^5",
+    strengths: &[Parameter::new("k5", "1/rad4", 3.0, [-20.0, 20.0])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Condition,
+    shows: any_run,
+    acts: Acts::Moment(|i, p| -i.run.natural_rad_s.powi(2) * p[0] * i.roll_rad.powi(5)),
+    always_equivalent: &[],
+    reference: "Ibrahim & Grace 2010",
+};

@@ -1,0 +1,22 @@
+//! Sinkage, trim and the wave along the hull change the metacentric height with speed.
+
+use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, one_node, under_way};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "restoring.speed",
+    layer: Layer::Restoring,
+    equation: "w^2 c (Fr/0.4)^2 phi",
+    strengths: &[Parameter::new("c", "-", 0.04, [-0.4, 0.4])],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Condition,
+    shows: under_way,
+    acts: Acts::Moment(law),
+    always_equivalent: &[],
+    reference: "ITTC 7.5-02-07-04.5",
+};
+
+fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
+    -i.run.natural_rad_s.powi(2) * p[0] * (i.run.froude / 0.4).powi(2) * i.roll_rad
+}

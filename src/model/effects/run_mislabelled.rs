@@ -1,0 +1,26 @@
+//! One run carries the label of another: its Froude number, condition or unit is wrong.
+
+use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, one_node};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "run.mislabelled",
+    layer: Layer::Instrument,
+    equation: "db b1 phi' + dk w^2 phi in this run alone",
+    strengths: &[
+        Parameter::new("db", "-", 0.7, [-0.95, 20.0]),
+        Parameter::new("dk", "-", 0.1, [-0.5, 2.0]),
+    ],
+    shapes: &[],
+    nodes: one_node,
+    scope: Scope::Run,
+    shows: |run| run.n_runs >= 5,
+    acts: Acts::Moment(law),
+    always_equivalent: &[],
+    reference: "the seed paper itself: Table 2",
+};
+
+fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
+    let w = i.run.natural_rad_s;
+    -p[0] * i.run.b1_per_s * i.rate_rad_per_s - p[1] * w * w * i.roll_rad
+}

@@ -1,0 +1,28 @@
+//! Sway, yaw or the towing frame give way and roll with the model.
+
+use crate::model::effect::{
+    Acts, Effect, Instant, Lag, Layer, MOST_LAGS, Parameter, Scope, any_run, each,
+};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "tank.coupled_mode",
+    layer: Layer::Tank,
+    equation: "y'' + 2 z v y' + v^2 y = -phi'', moment -mu y''",
+    strengths: &[Parameter::new("mu", "-", 0.03, [0.0, 0.3])],
+    shapes: &[Parameter::new("v", "rad/s", 4.0, [6.0, 80.0])],
+    nodes: |_| each(&[10.0, 16.0, 25.0, 38.0]),
+    scope: Scope::Campaign,
+    shows: any_run,
+    acts: Acts::Lagging(Lag { n_states: 2, slope, moment: |i, p, z| -p[0] * slope(i, p, z)[1] }),
+    always_equivalent: &[],
+    reference: "ITTC 7.5-02-07-04.5: captured or partly captured models",
+};
+
+/// Damping ratio of the mode that gives way [-].
+const RATIO: f64 = 0.05;
+
+fn slope(i: &Instant<'_>, p: &[f64], z: &[f64]) -> [f64; MOST_LAGS] {
+    let v = p[1];
+    [z[1], -2.0 * RATIO * v * z[1] - v * v * z[0] - i.acceleration_rad_per_s2]
+}

@@ -1,0 +1,29 @@
+//! Waves of an earlier run still press on the model.
+
+use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, decays, each};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    id: "tank.residual_wave",
+    layer: Layer::Tank,
+    equation: "a cos(v t) + b sin(v t)",
+    strengths: &[
+        Parameter::new("a", "rad/s2", 0.008, [-0.1, 0.1]),
+        Parameter::new("b", "rad/s2", 0.008, [-0.1, 0.1]),
+    ],
+    shapes: &[Parameter::new("v", "rad/s", 0.12, [1.0, 20.0])],
+    nodes: |run| {
+        let shares = [0.7, 0.8, 0.86, 0.92, 0.98, 1.04, 1.1, 1.2];
+        each(&shares.map(|share| share * run.natural_rad_s))
+    },
+    scope: Scope::Run,
+    shows: decays,
+    acts: Acts::Moment(law),
+    always_equivalent: &[],
+    reference: "ITTC 7.5-02-07-02.1: waiting time",
+};
+
+fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
+    let (sin, cos) = (p[2] * i.time_s).sin_cos();
+    p[0] * cos + p[1] * sin
+}

@@ -1,0 +1,14 @@
+//! The simulation model as data: the base equation, and one table of effects that may extend it.
+//!
+//! `(1 + i) phi'' + b1 phi' + b3 phi'^3 + w^2 phi = M/I + u`: each effect adds to the moment `u`,
+//! to the inertia `i`, or to what an instrument reads. An effect is one file in `effects/` and one
+//! line of the table there; nothing else knows its name.
+
+pub mod effect;
+pub mod effects;
+pub mod free;
+pub mod imposed;
+pub mod term;
+
+pub use effect::{Acts, Circumstances, Effect, Facts, Instant, Line, Parameter, Scope, Seen};
+pub use term::{Base, Term};
