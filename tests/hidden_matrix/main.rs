@@ -11,6 +11,7 @@ mod hidden_tank;
 mod arguments;
 mod cells;
 mod count;
+mod coverage;
 mod figures;
 mod outcome;
 mod tables;

@@ -5,17 +5,13 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::hidden_tank::campaign::{Asked, Campaign, Effect};
-use crate::hidden_tank::draw::Draw;
-use crate::hidden_tank::effects::row;
-use crate::hidden_tank::fit::misfit;
+use crate::coverage::covered;
+use crate::hidden_tank::campaign::{Asked, Campaign};
+use crate::hidden_tank::fit::{INDISTINGUISHABLE, left_by, misfit};
 use crate::hidden_tank::folder::play;
 use crate::hidden_tank::score::{Outcome, score};
 use crate::hidden_tank::timeline::Timeline;
 use crate::hidden_tank::verdict::{Verdict, diagnose};
-
-/// What is left of a misfit below which one effect stands for another (EFFECTS.md, section 6).
-const STANDS_FOR: f64 = 12.0;
 
 /// The outcomes written so far; a line that was cut short is left out, and its cell run again.
 pub(crate) fn read(file: &Path) -> Vec<Value> {
@@ -25,12 +21,9 @@ pub(crate) fn read(file: &Path) -> Vec<Value> {
 
 /// What the base cannot take up of each hidden effect alone.
 pub(crate) fn lambdas(campaign: &Campaign) -> Vec<f64> {
-    let alone = |effect: &Effect| misfit(campaign, &[copy(effect)], None);
-    campaign.effects.iter().map(alone).map(|lambda| (lambda * 10.0).round() / 10.0).collect()
-}
-
-fn copy(effect: &Effect) -> Effect {
-    Effect { row: effect.row, values: effect.values.clone() }
+    let alone =
+        campaign.effects.iter().map(|effect| misfit(campaign, std::slice::from_ref(effect), None));
+    alone.map(|lambda| (lambda * 10.0).round() / 10.0).collect()
 }
 
 /// Draws, plays, diagnoses and scores a campaign.
@@ -58,7 +51,7 @@ pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
     let outcome = score(&verdict, &asked.hidden, asked.set, |cause, hidden| {
         let left = left_by(&campaign, cause, hidden);
         stood_for.set(json!({ "cause": cause, "hidden": hidden, "lambda_left": left }));
-        left < STANDS_FOR
+        left < INDISTINGUISHABLE
     });
     line["verdict"] = json!(verdict.word);
     line["causes"] =
@@ -69,6 +62,7 @@ pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
     line["stands_for"] = stood_for.take();
     line["values"] =
         campaign.effects.iter().map(|effect| json!(effect.values)).collect::<Vec<_>>().into();
+    line["covered"] = covered(&campaign, &verdict.json["causes"]);
     tell(&mut line, &verdict);
     line
 }
@@ -102,16 +96,6 @@ fn tell(line: &mut Value, verdict: &Verdict) {
     for part in ["gain", "bias", "next_run", "residual"] {
         line[part] = json[part].clone();
     }
-}
-
-/// What is left where an effect that the program names is fitted beside the base to the hidden
-/// one; nothing could tell the two apart on these runs if it is next to nothing.
-fn left_by(campaign: &Campaign, cause: &str, hidden: &str) -> f64 {
-    let hidden = campaign.effects.iter().find(|effect| effect.row.id == hidden);
-    let (Some(hidden), Some(cause)) = (hidden, row(cause)) else { return f64::INFINITY };
-    let values = (cause.draw)(1.0, &mut Draw::named("a middling one"), &campaign.base);
-    let beside = Effect { row: cause, values };
-    misfit(campaign, &[copy(hidden)], Some(&beside))
 }
 
 /// The result with the seconds that it took.

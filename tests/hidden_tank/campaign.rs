@@ -58,6 +58,7 @@ pub(crate) struct Campaign {
 }
 
 /// One hidden effect with its values.
+#[derive(Clone)]
 pub(crate) struct Effect {
     /// Its line in the table.
     pub(crate) row: &'static Row,

@@ -8,7 +8,9 @@
 
 use super::base::{ARM_M, Base};
 use super::campaign::{Campaign, Effect};
+use super::draw::Draw;
 use super::effect::Hiding;
+use super::effects::row;
 use super::instruments::{MOMENT_NOISE_N_M, ROLL_NOISE_RAD, Rows, record};
 use super::least_squares::{Part, minimise};
 use super::motion::{Start, simulate};
@@ -28,6 +30,9 @@ const OWN: usize = 4;
 /// Prior standard deviation and difference step of the start of a run [rad], [rad/s].
 const START_SD: f64 = 1.0;
 const START_STEP: f64 = 1e-5;
+
+/// Misfit below which two effects are one class on the runs at hand (EFFECTS.md, section 6).
+pub(crate) const INDISTINGUISHABLE: f64 = 12.0;
 
 /// A pass with what it would show without noise.
 struct Target {
@@ -83,6 +88,15 @@ pub(crate) fn misfit(campaign: &Campaign, hidden: &[Effect], beside: Option<&Eff
             .collect()
     };
     minimise(x, &priors, 12, parts).sum
+}
+
+/// What is left of the hidden effect where another that a program names is fitted beside the base;
+/// below [`INDISTINGUISHABLE`] nothing could tell the two apart on these runs.
+pub(crate) fn left_by(campaign: &Campaign, cause: &str, hidden: &str) -> f64 {
+    let hidden = campaign.effects.iter().find(|effect| effect.row.id == hidden);
+    let (Some(hidden), Some(row)) = (hidden, row(cause)) else { return f64::INFINITY };
+    let values = (row.draw)(1.0, &mut Draw::named("a middling one"), &campaign.base);
+    misfit(campaign, std::slice::from_ref(hidden), Some(&Effect { row, values }))
 }
 
 fn step_of(unknown: usize, n_beside: usize) -> f64 {
