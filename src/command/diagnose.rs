@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     for reason in &left_out {
         tracing::warn!("run left out of the diagnosis: {reason}");
     }
-    let diagnosis = diagnosis::diagnose(observations);
+    let diagnosis = diagnosis::diagnose(observations, &campaign.tank);
     let exit = if diagnosis.is_some() { Exit::Done } else { Exit::Incomplete };
     if arguments.json {
         out.write_all(report::diagnosis_json(diagnosis.as_ref()).as_bytes())?;

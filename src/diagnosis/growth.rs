@@ -1,8 +1,10 @@
 //! The model grows by one effect at a time until nothing more is to be named.
 
+use super::leftover::{self, Leftover};
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score};
 use super::settle::{Settled, settle};
+use super::solve::{Layout, scatters, solve};
 use super::survey::{Extension, Fit, Survey};
 
 /// Least logarithm of a Bayes factor at which an effect may enter: one in a thousand by chance.
@@ -11,6 +13,8 @@ pub(super) const ENTERS: f64 = 7.0;
 const SAME: f64 = 12.0;
 /// The same as a share of what the effect explains.
 const SAME_SHARE: f64 = 0.01;
+/// Share of what is left for sure that an effect must take away to enter.
+const ENOUGH: f64 = 0.2;
 /// Most effects of a model.
 const MOST: usize = 5;
 /// Effects that are fitted in full at each step.
@@ -46,89 +50,195 @@ struct Tried {
 
 /// Grows the base model of a campaign.
 pub(super) fn grow(survey: &Survey) -> Grown {
-    let first = survey.first_fit();
-    let mut noise = rough_noise(survey);
-    let start = settle(survey, first, &noise);
-    noise = white(survey.noise(&start.fit));
+    let start = settle(survey, survey.first_fit(), &rough_noise(survey));
+    let mut noise = white(survey.noise(&start.fit));
     let mut current = settle(survey, start.fit, &noise);
-    let mut base_fit = current.fit.clone();
+    let base_fit = current.fit.clone();
     let mut entered: Vec<Entered> = Vec::new();
-    let mut ranking = Vec::new();
-    let mut implausible = Vec::new();
+    let (mut ranking, mut implausible) = (Vec::new(), Vec::new());
     while entered.len() < MOST {
-        let scores = score(survey, &current.fit, &noise);
+        let Some(step) = step(survey, &current, &noise) else { break };
         if entered.is_empty() {
-            ranking = scores.iter().map(|s| (s.extension.effect.id, s.log_bayes_factor)).collect();
+            ranking = step.ranking.clone();
         }
-        if scores.first().is_none_or(|s| s.log_bayes_factor < 0.5 * ENTERS) {
-            break;
-        }
-        // The noise is what the best explanation leaves, memory included; under it the causes are
-        // weighed again.
-        let mut tried = fit_all(survey, &current, &scores[..scores.len().min(3)], &noise);
-        tried.sort_by(|a, b| b.settled.log_evidence.total_cmp(&a.settled.log_evidence));
-        let best = &tried[0].settled;
-        if best.log_evidence < current.log_evidence {
-            break;
-        }
-        let next_noise = survey.noise(&best.fit);
-        current = settle(survey, current.fit, &next_noise);
-        let scores = score(survey, &current.fit, &next_noise);
-        let mut chosen: Vec<Scored> = scores.iter().take(FITTED).cloned().collect();
-        // What explained most before the noise had a memory is never forgotten.
-        for earlier in &tried {
-            if !chosen.iter().any(|s| s.extension.effect.id == earlier.id)
-                && let Some(again) = scores.iter().find(|s| s.extension.effect.id == earlier.id)
-            {
-                chosen.push(again.clone());
-            }
-        }
-        let mut tried = fit_all(survey, &current, &chosen, &next_noise);
-        let before = misfit(&current);
-        tried.sort_by(|a, b| b.settled.log_evidence.total_cmp(&a.settled.log_evidence));
-        if entered.is_empty() {
-            for one in &tried {
-                let log = one.settled.log_evidence - current.log_evidence;
-                if let Some(place) = ranking.iter_mut().find(|(id, _)| *id == one.id) {
-                    place.1 = log;
-                }
-            }
-            ranking.sort_by(|a, b| b.1.total_cmp(&a.1));
-        }
-        let (plausible, wild): (Vec<Tried>, Vec<Tried>) =
-            tried.into_iter().partition(|one| is_plausible(survey, &one.settled));
-        for one in &wild {
-            let log = one.settled.log_evidence - current.log_evidence;
-            if log > ENTERS {
-                implausible.push((one.id, log));
-            }
-        }
-        let Some(best) = plausible.first() else { break };
-        let log_bayes_factor = best.settled.log_evidence - current.log_evidence;
-        if log_bayes_factor < ENTERS {
-            break;
-        }
-        let explained = before - misfit(&best.settled);
-        let room = SAME.max(SAME_SHARE * explained);
-        let equivalent_to = plausible[1..]
-            .iter()
-            .filter(|one| 2.0 * (best.settled.log_evidence - one.settled.log_evidence) < room)
-            .map(|one| one.id)
-            .collect();
-        entered.push(Entered { id: best.id, log_bayes_factor, explained, equivalent_to });
-        noise = next_noise;
-        if entered.len() == 1 {
-            base_fit = current.fit.clone();
-        }
-        current = plausible.into_iter().next().map_or(current, |one| one.settled);
+        implausible.extend(step.implausible);
+        let Some(won) = step.won else { break };
+        noise = step.noise;
+        current = won.0;
+        entered.push(won.1);
+    }
+    if entered.len() > 1 {
+        (current, entered) = check_backward(survey, current, entered, &noise);
     }
     let base = settle(survey, base_fit, &noise);
     let last = settle(survey, current.fit, &noise);
     Grown { base, last, noise, entered, ranking, implausible }
 }
 
-fn misfit(settled: &Settled) -> f64 {
-    settled.solution.misfit_here
+/// One step of growth.
+struct Step {
+    /// The grown model, if an effect may enter.
+    won: Option<(Settled, Entered)>,
+    noise: Vec<ChannelNoise>,
+    ranking: Vec<(&'static str, f64)>,
+    implausible: Vec<(&'static str, f64)>,
+}
+
+/// Tries to add one effect; none when no effect is worth a look.
+fn step(survey: &Survey, before: &Settled, noise: &[ChannelNoise]) -> Option<Step> {
+    let scores = score(survey, &before.fit, noise);
+    let mut ranking: Vec<(&'static str, f64)> =
+        scores.iter().map(|s| (s.extension.effect.id, s.log_bayes_factor)).collect();
+    let quiet =
+        |ranking| Some(Step { won: None, noise: noise.to_vec(), ranking, implausible: Vec::new() });
+    if scores.first().is_none_or(|s| s.log_bayes_factor < 0.5 * ENTERS) {
+        return quiet(ranking);
+    }
+    // The noise is what the best explanation leaves, memory included; under it the causes are
+    // weighed again.
+    let mut first = fit_all(survey, before, &scores[..scores.len().min(3)], noise);
+    sort(&mut first);
+    let best = &first[0].settled;
+    if best.log_evidence < before.log_evidence {
+        return quiet(ranking);
+    }
+    let noise = survey.noise(&best.fit);
+    let current = settle(survey, before.fit.clone(), &noise);
+    let scores = score(survey, &current.fit, &noise);
+    let worth = 0.05 * scores.first().map_or(0.0, |s| s.log_bayes_factor).max(0.0);
+    let mut chosen: Vec<Scored> =
+        scores.iter().take(FITTED).filter(|s| s.log_bayes_factor >= worth).cloned().collect();
+    // What explained most before the noise had a memory is never forgotten.
+    for earlier in &first {
+        if !chosen.iter().any(|s| s.extension.effect.id == earlier.id)
+            && let Some(again) = scores.iter().find(|s| s.extension.effect.id == earlier.id)
+        {
+            chosen.push(again.clone());
+        }
+    }
+    let mut tried = fit_all(survey, &current, &chosen, &noise);
+    sort(&mut tried);
+    for one in &tried {
+        if let Some(place) = ranking.iter_mut().find(|(id, _)| *id == one.id) {
+            place.1 = one.settled.log_evidence - current.log_evidence;
+        }
+    }
+    ranking.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let (plausible, wild): (Vec<Tried>, Vec<Tried>) =
+        tried.into_iter().partition(|one| is_plausible(survey, &one.settled));
+    let implausible = wild
+        .iter()
+        .map(|one| (one.id, one.settled.log_evidence - current.log_evidence))
+        .filter(|(_, log)| *log > ENTERS)
+        .collect();
+    let won = winner(survey, &current, plausible);
+    Some(Step { won, noise, ranking, implausible })
+}
+
+fn sort(tried: &mut [Tried]) {
+    tried.sort_by(|a, b| b.settled.log_evidence.total_cmp(&a.settled.log_evidence));
+}
+
+/// The best of the tried effects, if it may enter, with those that cannot be told from it.
+fn winner(survey: &Survey, current: &Settled, plausible: Vec<Tried>) -> Option<(Settled, Entered)> {
+    let best = plausible.first()?;
+    let log_bayes_factor = best.settled.log_evidence - current.log_evidence;
+    if log_bayes_factor < ENTERS || !explains_enough(survey, &current.fit, &best.settled.fit) {
+        return None;
+    }
+    let explained = explained(survey, current, &best.settled);
+    let room = SAME.max(SAME_SHARE * explained);
+    let equivalent_to = plausible[1..]
+        .iter()
+        .filter(|one| 2.0 * (best.settled.log_evidence - one.settled.log_evidence) < room)
+        .map(|one| one.id)
+        .collect();
+    let entered = Entered { id: best.id, log_bayes_factor, explained, equivalent_to };
+    plausible.into_iter().next().map(|best| (best.settled, entered))
+}
+
+/// The fall of the misfit from one model to the next when no run may leave its law: what scatter
+/// could hide is still explained.
+fn explained(survey: &Survey, before: &Settled, after: &Settled) -> f64 {
+    let tight = scatters(survey)[0];
+    let least =
+        |settled: &Settled| solve(survey, &settled.fit, &settled.summaries, tight).least_misfit;
+    least(before) - least(after)
+}
+
+/// Whether an effect takes its part of what is left for sure: what removes a little of a large
+/// remainder is not its cause, whatever its odds.
+fn explains_enough(survey: &Survey, before: &Fit, after: &Fit) -> bool {
+    let (before, after) = (leftovers(survey, before), leftovers(survey, after));
+    if !before.iter().any(Leftover::is_sure) {
+        return true;
+    }
+    let excess = |all: &[Leftover]| all.iter().map(|l| l.excess).sum::<f64>();
+    excess(&before) - excess(&after) > ENOUGH * excess(&before)
+}
+
+/// What a fit leaves of every channel of every run.
+pub(super) fn leftovers(survey: &Survey, fit: &Fit) -> Vec<Leftover> {
+    let residuals = survey.residuals(fit);
+    survey.runs.iter().zip(&residuals).flat_map(|(run, left)| leftover::of(run, left)).collect()
+}
+
+/// Takes each effect out again: one that is missed too little leaves, and what could stand in its
+/// place, the others given, is told with it.
+fn check_backward(
+    survey: &Survey,
+    grown: Settled,
+    mut entered: Vec<Entered>,
+    noise: &[ChannelNoise],
+) -> (Settled, Vec<Entered>) {
+    let mut current = settle(survey, grown.fit, noise);
+    let mut e = 0;
+    while e < entered.len() {
+        let mut less = current.fit.clone();
+        let taken = less.extensions.remove(e);
+        let without = settle(survey, less, noise);
+        let missed = current.log_evidence - without.log_evidence;
+        if missed < ENTERS {
+            current = without;
+            entered.remove(e);
+            continue;
+        }
+        let explained = explained(survey, &without, &current);
+        let room = SAME.max(SAME_SHARE * explained);
+        let rivals: Vec<Scored> = score(survey, &without.fit, noise)
+            .into_iter()
+            .filter(|s| {
+                s.extension.effect.id != taken.effect.id && s.log_bayes_factor > 0.3 * missed
+            })
+            .take(4)
+            .collect();
+        let tried = fit_all(survey, &without, &rivals, noise);
+        entered[e].log_bayes_factor = missed;
+        entered[e].explained = explained;
+        entered[e].equivalent_to = tried
+            .iter()
+            .filter(|one| is_plausible(survey, &one.settled))
+            .filter(|one| 2.0 * (current.log_evidence - one.settled.log_evidence) < room)
+            .map(|one| one.id)
+            .collect();
+        let better = tried
+            .into_iter()
+            .filter(|one| is_plausible(survey, &one.settled))
+            .filter(|one| one.settled.log_evidence > current.log_evidence + 0.5 * SAME)
+            .max_by(|a, b| a.settled.log_evidence.total_cmp(&b.settled.log_evidence));
+        if let Some(better) = better {
+            // The newcomer takes the place of the one that was taken out.
+            let mut fit = better.settled.fit.clone();
+            if let Some(newest) = fit.extensions.pop() {
+                fit.extensions.insert(e, newest);
+            }
+            entered[e].id = better.id;
+            entered[e].equivalent_to.retain(|id| *id != better.id);
+            current = settle(survey, fit, noise);
+        }
+        e += 1;
+    }
+    (current, entered)
 }
 
 fn rough_noise(survey: &Survey) -> Vec<ChannelNoise> {
@@ -181,7 +291,7 @@ fn with(fit: &Fit, mut extension: Extension) -> Fit {
 /// Whether the newest effect lies inside its physical range, as far as its deviation allows.
 fn is_plausible(survey: &Survey, settled: &Settled) -> bool {
     let Some(extension) = settled.fit.extensions.last() else { return true };
-    let layout = super::solve::Layout::new(survey, &settled.fit);
+    let layout = Layout::new(survey, &settled.fit);
     let e = settled.fit.extensions.len() - 1;
     extension.slots.iter().enumerate().all(|(s, values)| {
         (0..extension.effect.strengths.len()).all(|k| {

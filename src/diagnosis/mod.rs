@@ -7,8 +7,12 @@
 
 mod elimination;
 mod facts;
+mod gain;
 mod growth;
+mod leftover;
+mod next_run;
 mod observation;
+mod records;
 mod run_fit;
 mod score;
 mod settle;
@@ -16,5 +20,7 @@ mod solve;
 mod survey;
 mod verdict;
 
+pub use leftover::Leftover;
+pub use next_run::NextRun;
 pub use observation::Observation;
-pub use verdict::{Cause, Diagnosis, Verdict, diagnose};
+pub use verdict::{Bias, Cause, Change, Diagnosis, Gain, Verdict, diagnose};

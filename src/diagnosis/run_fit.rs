@@ -82,6 +82,16 @@ pub(super) struct Summary {
     pub(super) own_gain: f64,
 }
 
+impl Summary {
+    /// The same run with readings that count nothing.
+    pub(super) fn emptied(&self) -> Self {
+        let mut empty = self.clone();
+        empty.eliminated.rest = Products::zero(self.eliminated.rest.n());
+        empty.own_gain = 0.0;
+        empty
+    }
+}
+
 /// Largest share of the typical size by which a strength is moved to see what it does.
 const SMALL: f64 = 1e-3;
 

@@ -1,9 +1,15 @@
-//! What is told of a campaign: a verdict, causes in order of entry, and every effect's rank.
+//! What is told of a campaign: verdict, causes in order of entry, gain, bias, what is left.
 
-use super::growth::{Grown, grow};
+use super::gain::{self, HeldOut};
+use super::growth::{Grown, grow, leftovers};
+use super::leftover::Leftover;
+use super::next_run::{NextRun, next_run};
 use super::observation::Observation;
+use super::records;
+use super::settle::Settled;
 use super::solve::Layout;
-use super::survey::Survey;
+use super::survey::{N_LAW, Survey};
+use crate::campaign::Tank;
 use crate::inverse::estimate::Estimate;
 use crate::model::effects;
 
@@ -35,6 +41,41 @@ pub struct Cause {
     pub equivalent_to: Vec<&'static str>,
 }
 
+/// A figure before and after the extension.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Change {
+    /// Under the base model.
+    pub before: Estimate,
+    /// Under the extended model.
+    pub after: Estimate,
+}
+
+/// What the extension gains on runs that took no part in its fit: means over runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gain {
+    /// Root mean square error of the predicted roll [deg].
+    pub rmse_deg: Change,
+    /// Logarithm of the predictive density of a sample, in units of its noise.
+    pub log_density: Change,
+    /// Share of the moment that is left unexplained [-].
+    pub unexplained_share: Change,
+    /// Mean over runs of the difference of log densities, with its standard error.
+    pub log_density_gain: Estimate,
+}
+
+/// What the base model says of the damping, and what the extended one does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bias {
+    /// Condition.
+    pub condition: String,
+    /// Linear damping at rest [1/s].
+    pub b1_per_s: Change,
+    /// Cubic damping [s].
+    pub b3_s: Change,
+    /// Speed coefficient [-]; none without runs at different speeds.
+    pub kappa: Option<Change>,
+}
+
 /// What a campaign's runs say about the simulation model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagnosis {
@@ -42,26 +83,70 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// Causes in order of entry.
     pub causes: Vec<Cause>,
+    /// Effects that explain a part, in runs where most remains unexplained.
+    pub suspects: Vec<&'static str>,
+    /// Effects that would explain something only with impossible numbers.
+    pub implausible: Vec<&'static str>,
     /// Every effect with the logarithm of its Bayes factor against the base model, best first.
     pub ranking: Vec<(&'static str, f64)>,
+    /// Gain on runs held out; none with a single run.
+    pub gain: Option<Gain>,
+    /// One per condition.
+    pub bias: Vec<Bias>,
+    /// What the base model leaves of every channel.
+    pub left_before: Vec<Leftover>,
+    /// What the extended model leaves.
+    pub left_after: Vec<Leftover>,
+    /// What to tow next.
+    pub next_run: Option<NextRun>,
 }
 
+/// Share of what the base model leaves beyond which causes are no whole story.
+const MOST_LEFT: f64 = 0.3;
+
 /// Diagnoses the runs of a campaign; none without runs.
-pub fn diagnose(runs: Vec<Observation>) -> Option<Diagnosis> {
+pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
     if runs.is_empty() {
         return None;
     }
     let survey = Survey::new(runs);
     let grown = grow(&survey);
-    let causes = causes(&survey, &grown);
-    let verdict = if causes.iter().any(|cause| !cause.equivalent_to.is_empty()) {
+    let left_before = leftovers(&survey, &grown.base.fit);
+    let left_after = leftovers(&survey, &grown.last.fit);
+    let mut causes = causes(&survey, &grown);
+    let mut suspects = Vec::new();
+    let excess = |all: &[Leftover]| all.iter().map(|l| l.excess).sum::<f64>();
+    let is_left = left_after.iter().any(Leftover::is_sure);
+    let untold = is_left && excess(&left_after) > MOST_LEFT * excess(&left_before);
+    if untold {
+        suspects = causes.iter().map(|cause| cause.effect).collect();
+        causes.clear();
+    }
+    causes.extend(records::causes(&survey));
+    let verdict = if untold {
+        Verdict::Unexplained
+    } else if causes.iter().any(|cause| !cause.equivalent_to.is_empty()) {
         Verdict::Ambiguous
-    } else if !causes.is_empty() {
-        Verdict::Named
-    } else {
+    } else if causes.is_empty() {
         Verdict::Adequate
+    } else {
+        Verdict::Named
     };
-    Some(Diagnosis { verdict, causes, ranking: grown.ranking })
+    let next_run = next_run(&survey, &grown, tank);
+    let mut implausible: Vec<&'static str> = grown.implausible.iter().map(|(id, _)| *id).collect();
+    implausible.dedup();
+    Some(Diagnosis {
+        verdict,
+        causes,
+        suspects,
+        implausible,
+        gain: gain(&survey, &grown),
+        bias: bias(&survey, &grown),
+        ranking: grown.ranking,
+        left_before,
+        left_after,
+        next_run,
+    })
 }
 
 fn causes(survey: &Survey, grown: &Grown) -> Vec<Cause> {
@@ -90,4 +175,58 @@ fn causes(survey: &Survey, grown: &Grown) -> Vec<Cause> {
         }
     });
     told.collect()
+}
+
+fn gain(survey: &Survey, grown: &Grown) -> Option<Gain> {
+    let before = gain::held_out(survey, &grown.base, &grown.noise);
+    let after = gain::held_out(survey, &grown.last, &grown.noise);
+    if before.is_empty() {
+        return None;
+    }
+    let change = |of: &dyn Fn(&HeldOut) -> f64| Change {
+        before: gain::mean(&before.iter().map(of).collect::<Vec<_>>()),
+        after: gain::mean(&after.iter().map(of).collect::<Vec<_>>()),
+    };
+    let differences: Vec<f64> =
+        before.iter().zip(&after).map(|(b, a)| a.log_density - b.log_density).collect();
+    Some(Gain {
+        rmse_deg: change(&|h| h.rmse_rad.to_degrees()),
+        log_density: change(&|h| h.log_density),
+        unexplained_share: change(&|h| h.unexplained_share),
+        log_density_gain: gain::mean(&differences),
+    })
+}
+
+fn bias(survey: &Survey, grown: &Grown) -> Vec<Bias> {
+    let told = survey.conditions.iter().enumerate().map(|(c, condition)| {
+        let number = |settled: &Settled, k: usize| {
+            let column = N_LAW * c + k;
+            let sd = settled.solution.covariance[column][column].max(0.0).sqrt();
+            Estimate::normal(settled.fit.laws[c].numbers[k], sd)
+        };
+        let change =
+            |k: usize| Change { before: number(&grown.base, k), after: number(&grown.last, k) };
+        let members = survey.members(c);
+        let first = survey.runs[members[0]].at.froude;
+        let moves = members.iter().any(|r| (survey.runs[*r].at.froude - first).abs() > 1e-3);
+        Bias {
+            condition: condition.clone(),
+            b1_per_s: change(1),
+            b3_s: change(3),
+            kappa: moves
+                .then(|| Change { before: kappa(&grown.base, c), after: kappa(&grown.last, c) }),
+        }
+    });
+    told.collect()
+}
+
+/// The ratio `bk/b0` with its deviation to first order.
+fn kappa(settled: &Settled, condition: usize) -> Estimate {
+    let (zero, slope) = (N_LAW * condition + 1, N_LAW * condition + 2);
+    let [_, b0, bk, _] = settled.fit.laws[condition].numbers;
+    let covariance = &settled.solution.covariance;
+    let kappa = bk / b0;
+    let variance = covariance[slope][slope] - 2.0 * kappa * covariance[zero][slope]
+        + kappa * kappa * covariance[zero][zero];
+    Estimate::normal(kappa, variance.max(0.0).sqrt() / b0.abs())
 }

@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, each};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "damping.coulomb",
     layer: Layer::Damping,
     equation: "f tanh(phi'/ve), f = Mf/(I+dI)",

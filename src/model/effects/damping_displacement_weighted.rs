@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "damping.displacement_weighted",
     layer: Layer::Damping,
     equation: "bf phi^2 phi'",

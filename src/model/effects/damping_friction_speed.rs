@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, each, under_way};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "damping.friction_speed",
     layer: Layer::Damping,
     equation: "f (Fr/0.4)^2 tanh(phi'/ve), f = Mf/(I+dI) at Fr 0.4",

@@ -5,7 +5,7 @@ use crate::model::effect::{
 };
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "damping.memory",
     layer: Layer::Damping,
     equation: "mu(s) = bm a1 s/(s^2 + a1 s + (q w)^2) phi'",

@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, one_node, under_way};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "damping.nonlinear_speed",
     layer: Layer::Damping,
     equation: "c3 (Fr/0.4)^2 phi'^3",

@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, any_run, each};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "damping.power_law",
     layer: Layer::Damping,
     equation: "bp phi'|phi'/(w 10 deg)|^(p-1)",

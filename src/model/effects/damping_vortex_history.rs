@@ -5,7 +5,7 @@ use crate::model::effect::{
 };
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "damping.vortex_history",
     layer: Layer::Damping,
     equation: "b2 z, tau z' = phi'|phi'| - z",

@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, one_node, under_way};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "damping.wave_speed",
     layer: Layer::Damping,
     equation: "bw exp(-150 (w V/g - 1/4)^2) phi'",

@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, forced, one_node};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "exciter.rod_inertia",
     layer: Layer::Exciter,
     equation: "M + r (I+dI) phi''",

@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "inertia.amplitude",
     layer: Layer::Inertia,
     equation: "(1 + a phi^2) phi''",

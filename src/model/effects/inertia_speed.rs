@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, one_node, under_way};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "inertia.speed",
     layer: Layer::Inertia,
     equation: "(1 + c (Fr/0.4)^2) phi''",

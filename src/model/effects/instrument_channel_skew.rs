@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, forced, one_node};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "instrument.channel_skew",
     layer: Layer::Instrument,
     equation: "phi(t - tau)",

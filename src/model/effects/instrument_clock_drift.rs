@@ -1,18 +1,26 @@
 //! The clocks of roll and moment run at different rates.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, forced, one_node};
+use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, forced, one_node};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "instrument.clock_drift",
     layer: Layer::Instrument,
-    equation: "phi(t (1 - c))",
-    strengths: &[Parameter::new("c", "-", 0.0001, [-0.002, 0.002])],
+    equation: "phi(t - c t - tau)",
+    strengths: &[
+        Parameter::new("c", "-", 0.0001, [-0.002, 0.002]),
+        Parameter::new("tau", "s", 0.004, [-0.05, 0.05]),
+    ],
     shapes: &[],
     nodes: one_node,
     scope: Scope::Campaign,
     shows: forced,
-    acts: Acts::Roll(|all, p| all.iter().map(|i| -p[0] * i.time_s * i.rate_rad_per_s).collect()),
+    acts: Acts::Roll(|all, p| all.iter().map(|i| late(i, p)).collect()),
     always_equivalent: &[],
     reference: "crystal data sheets",
 };
+
+fn late(i: &Instant<'_>, p: &[f64]) -> f64 {
+    let late_s = p[0] * i.time_s + p[1];
+    -late_s * i.rate_rad_per_s + 0.5 * late_s * late_s * i.acceleration_rad_per_s2
+}

@@ -5,7 +5,7 @@ use crate::model::effect::{
 };
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "instrument.dropped_samples",
     layer: Layer::Instrument,
     equation: "phi(t + d) from one instant on",

@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, one_node, with_moment};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "instrument.force_offset",
     layer: Layer::Instrument,
     equation: "M + m0",

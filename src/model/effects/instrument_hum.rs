@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Facts, Layer, Parameter, Scope, Seen, any_run, one_node};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "instrument.hum",
     layer: Layer::Instrument,
     equation: "phi + h sin(2 pi f t)",

@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, any_run, one_node};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "instrument.roll_backlash",
     layer: Layer::Instrument,
     equation: "phi within +-d of the reading",

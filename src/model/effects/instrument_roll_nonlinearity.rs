@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, any_run, each};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "instrument.roll_nonlinearity",
     layer: Layer::Instrument,
     equation: "phi + e1 sin(2 pi phi/L) + e2 (cos(2 pi phi/L) - 1)",

@@ -5,7 +5,7 @@ use crate::model::effect::{
 };
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "restoring.free_surface",
     layer: Layer::Restoring,
     equation: "psi'' + 2 z wt psi' + wt^2 (psi + phi) = 0, moment -kt w^2 psi",
@@ -14,7 +14,7 @@ pub const EFFECT: Effect = Effect {
         Parameter::new("wt/w", "-", 0.1, [0.3, 1.4]),
         Parameter::new("z", "-", 0.05, [0.005, 0.6]),
     ],
-    nodes: |_| [0.45, 0.6, 0.75, 0.9, 1.1].map(|share| vec![share, 0.08]).to_vec(),
+    nodes: |_| [0.45, 0.55, 0.65, 0.7, 0.75, 0.8, 0.9, 1.1].map(|share| vec![share, 0.05]).to_vec(),
     scope: Scope::Campaign,
     shows: any_run,
     acts: Acts::Lagging(Lag { n_states: 2, slope, moment }),

@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "restoring.heel",
     layer: Layer::Restoring,
     equation: "w^2 (phi - phis)",

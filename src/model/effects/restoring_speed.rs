@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, one_node, under_way};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "restoring.speed",
     layer: Layer::Restoring,
     equation: "w^2 c (Fr/0.4)^2 phi",

@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, one_node};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "run.mislabelled",
     layer: Layer::Instrument,
     equation: "db b1 phi' + dk w^2 phi in this run alone",

@@ -5,7 +5,7 @@ use crate::model::effect::{
 };
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "tank.carriage_vibration",
     layer: Layer::Tank,
     equation: "phi + h sin(2 pi f t), under way only",

@@ -5,7 +5,7 @@ use crate::model::effect::{
 };
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "tank.coupled_mode",
     layer: Layer::Tank,
     equation: "y'' + 2 z v y' + v^2 y = -phi'', moment -mu y''",

@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, decays, each};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "tank.residual_wave",
     layer: Layer::Tank,
     equation: "a cos(v t) + b sin(v t)",

@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, decays, each};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "tank.slow_release",
     layer: Layer::Tank,
     equation: "s w^2 phi0 exp(-t/tr)",

@@ -5,7 +5,7 @@ use crate::model::effect::{
 };
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "tank.unsteady_speed",
     layer: Layer::Tank,
     equation: "2 dv (b1 - b0) exp(-t/T) phi'",

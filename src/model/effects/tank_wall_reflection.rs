@@ -3,7 +3,7 @@
 use crate::model::effect::{Acts, Circumstances, Effect, Instant, Layer, Parameter, Scope, each};
 
 /// The effect.
-pub const EFFECT: Effect = Effect {
+pub(super) const EFFECT: Effect = Effect {
     id: "tank.wall_reflection",
     layer: Layer::Tank,
     equation: "r1 phi'(t - td) + r2 w phi(t - td)",
@@ -11,7 +11,7 @@ pub const EFFECT: Effect = Effect {
         Parameter::new("r1", "1/s", 0.1, [-1.0, 1.0]),
         Parameter::new("r2", "1/s", 0.1, [-1.0, 1.0]),
     ],
-    shapes: &[Parameter::new("td", "s", 0.7, [3.0, 40.0])],
+    shapes: &[Parameter::new("td", "s", 0.3, [3.0, 60.0])],
     nodes: delays,
     scope: Scope::Campaign,
     shows: in_reach,
@@ -32,7 +32,10 @@ fn delays(run: &Circumstances) -> Vec<Vec<f64>> {
     match run.clear_width_m {
         Some(width_m) => {
             let trip_s = width_m * 2.0 * run.natural_rad_s / run.gravity_m_s2;
-            each(&[0.8 * trip_s, 0.9 * trip_s, trip_s, 1.1 * trip_s])
+            let half_period_s = std::f64::consts::PI / run.natural_rad_s;
+            let n = (0.7 * trip_s / half_period_s).round().max(1.0) as usize;
+            let node = |k: usize| trip_s * (0.6 + 0.7 * k as f64 / n as f64);
+            each(&(0..=n).map(node).collect::<Vec<_>>())
         }
         None => each(&[8.0, 10.0, 12.0, 14.0, 17.0, 20.0]),
     }

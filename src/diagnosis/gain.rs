@@ -1,0 +1,89 @@
+//! What the extension gains on runs that took no part in its fit.
+
+use super::run_fit::{ChannelNoise, RunState, Summary, predict, residual, summarise};
+use super::settle::Settled;
+use super::solve::{moved, solve};
+use super::survey::{Fit, Survey};
+use crate::inverse::estimate::Estimate;
+
+/// One run predicted by a model that never saw it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeldOut {
+    /// Root mean square of measured less predicted roll [rad].
+    pub rmse_rad: f64,
+    /// Mean logarithm of the predictive density of a sample of either channel, in units of its
+    /// noise.
+    pub log_density: f64,
+    /// Share of the moment's energy that is left unexplained [-].
+    pub unexplained_share: f64,
+}
+
+/// Every run predicted without its own help; nothing when there is one run.
+///
+/// Only the start of a run (its initial state, or the course that the rod imposed) is its own.
+pub(super) fn held_out(survey: &Survey, settled: &Settled, noise: &[ChannelNoise]) -> Vec<HeldOut> {
+    if survey.runs.len() < 2 {
+        return Vec::new();
+    }
+    survey.each_run(&|run| {
+        let trained = without(survey, settled, run);
+        predicted(survey, &trained, run, &noise[run])
+    })
+}
+
+/// The fit without one run: its readings count nothing.
+fn without(survey: &Survey, settled: &Settled, run: usize) -> Fit {
+    let mut summaries: Vec<Summary> = settled.summaries.clone();
+    summaries[run] = summaries[run].emptied();
+    let solution = solve(survey, &settled.fit, &summaries, settled.solution.scatter);
+    moved(survey, &settled.fit, &summaries, &solution, 1.0)
+}
+
+fn predicted(survey: &Survey, trained: &Fit, run: usize, noise: &ChannelNoise) -> HeldOut {
+    let observation = &survey.runs[run];
+    let terms = trained.terms(run);
+    let law = trained.laws[survey.condition_of[run]].at(observation.at.froude);
+    let mut state =
+        RunState { own: trained.states[run].own.clone(), ..trained.states[run].clone() };
+    (state.base.natural_rad_s, state.base.b1_per_s, state.base.b3_s) = (law[0], law[1], law[2]);
+    state.base.log_scale = trained.log_scale;
+    let white = ChannelNoise { correlation: [0.0; 2], ..*noise };
+    for _ in 0..3 {
+        let own = summarise(observation, &state, &terms, &[], &white);
+        let nothing = vec![0.0; own.eliminated.rest.n() - 1];
+        let steps = own.eliminated.back(&nothing);
+        state.own.iter_mut().zip(&steps).for_each(|(number, step)| *number += step);
+    }
+    let left = residual(observation, &predict(observation, &state, &terms));
+    let n_roll = observation.roll_rad.len();
+    let mean_square =
+        |part: &[f64]| part.iter().map(|r| r * r).sum::<f64>() / part.len().max(1) as f64;
+    let (roll, moment) = (mean_square(&left[..n_roll]), mean_square(&left[n_roll..]));
+    let sds = observation.rough_noise;
+    let density =
+        |square: f64, sd: f64| -0.5 * square / (sd * sd) - 0.5 * std::f64::consts::TAU.ln();
+    let n_moment = left.len() - n_roll;
+    let log_density = (n_roll as f64 * density(roll, sds[0])
+        + n_moment as f64 * density(moment, sds[1]))
+        / left.len() as f64;
+    let share = |left: f64, sd: f64, values: &[f64]| {
+        let middle = values.iter().sum::<f64>() / values.len() as f64;
+        let whole = values.iter().map(|v| (v - middle).powi(2)).sum::<f64>() / values.len() as f64;
+        (left - sd * sd).max(0.0) / whole
+    };
+    let is_forced = observation.at.kind == crate::run::RunKind::Forced;
+    let unexplained_share = if is_forced && n_moment > 0 {
+        share(moment, sds[1], &observation.moment_n_m)
+    } else {
+        share(roll, sds[0], &observation.roll_rad)
+    };
+    HeldOut { rmse_rad: roll.sqrt(), log_density, unexplained_share }
+}
+
+/// Mean over runs, with the standard error that their differences show.
+pub(super) fn mean(values: &[f64]) -> Estimate {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let square = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
+    Estimate::normal(mean, (square / (n * (n - 1.0).max(1.0))).sqrt())
+}

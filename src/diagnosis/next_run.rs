@@ -1,0 +1,316 @@
+//! Which run would say most: by the expected Bayes factor where causes are undecided, else by what
+//! the law of damping would gain.
+
+use super::growth::Grown;
+use super::observation::Observation;
+use super::run_fit::{ChannelNoise, RunState, Summary, predict, summarise};
+use super::score::score;
+use super::settle::{Settled, settle};
+use super::solve::solve;
+use super::survey::{Fit, N_LAW, Survey};
+use crate::campaign::Tank;
+use crate::model::imposed::N_COURSE;
+use crate::run::RunKind;
+
+/// A run worth towing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NextRun {
+    /// `decay`, `forced` or `rest_reading`.
+    pub kind: &'static str,
+    /// Froude number [-].
+    pub froude: f64,
+    /// Frequency of the excitation [rad/s] of a forced run.
+    pub frequency_rad_s: Option<f64>,
+    /// Roll amplitude [deg].
+    pub amplitude_deg: f64,
+    /// The effects that it parts.
+    pub parts: Vec<&'static str>,
+    /// Expected logarithm of the Bayes factor between them, or of the law's volume.
+    pub expected_log_bayes_factor: f64,
+    /// Why, in words.
+    pub why: String,
+}
+
+/// A run that could be made.
+#[derive(Debug, Clone, Copy)]
+struct Plan {
+    kind: RunKind,
+    froude: f64,
+    amplitude_deg: f64,
+    /// Excitation over natural frequency [-].
+    tuning: f64,
+}
+
+/// Length that the carriage may run steadily, as a share of the tank.
+const STEADY_SHARE: f64 = 0.7;
+const LONGEST_S: f64 = 25.0;
+const SHORTEST_S: f64 = 8.0;
+const SAMPLE_S: f64 = 0.02;
+
+fn plans(tank: &Tank, run: &Observation) -> Vec<(Plan, f64)> {
+    let unit_m_s = run.at.speed_m_s / run.at.froude.max(1e-9);
+    let mut plans = Vec::new();
+    for froude in [0.0, 0.05, 0.1, 0.2, 0.3, 0.4] {
+        // Without a run under way the speed of a Froude number is not known here.
+        let speed_m_s = if run.at.froude > 0.01 { froude * unit_m_s } else { froude * 4.95 };
+        if tank.carriage_max_speed_m_s.is_some_and(|most| speed_m_s > most) {
+            continue;
+        }
+        let steady_s = tank.length_m.map_or(LONGEST_S, |m| STEADY_SHARE * m / speed_m_s.max(1e-9));
+        let span_s = steady_s.min(LONGEST_S);
+        if span_s < SHORTEST_S {
+            continue;
+        }
+        for amplitude_deg in [4.0, 10.0, 15.0, -15.0, 25.0] {
+            plans.push((Plan { kind: RunKind::Decay, froude, amplitude_deg, tuning: 1.0 }, span_s));
+        }
+        if froude == 0.0 || (froude - 0.2).abs() < 1e-9 {
+            for tuning in [0.75, 1.0, 1.2] {
+                for amplitude_deg in [5.0, 10.0, 15.0] {
+                    plans.push((
+                        Plan { kind: RunKind::Forced, froude, amplitude_deg, tuning },
+                        span_s,
+                    ));
+                }
+            }
+        }
+    }
+    plans
+}
+
+impl Plan {
+    /// The run as it would be observed under a fit, without noise.
+    fn observed(
+        &self,
+        survey: &Survey,
+        fit: &Fit,
+        span_s: f64,
+    ) -> (Observation, RunState, ChannelNoise) {
+        let like = &survey.runs[0];
+        let law = &fit.laws[survey.condition_of[0]];
+        let [w, b1, b3] = law.at(self.froude);
+        let amplitude_rad = self.amplitude_deg.to_radians();
+        let rolling_rad_s = self.tuning * w;
+        let mut at = like.at;
+        at.kind = self.kind;
+        let unit_m_s = if at.froude > 0.01 { at.speed_m_s / at.froude } else { 4.95 };
+        (at.froude, at.speed_m_s) = (self.froude, self.froude * unit_m_s);
+        (at.rolling_rad_s, at.span_s) = (rolling_rad_s, span_s);
+        at.amplitude_rad = amplitude_rad.abs();
+        at.initial_roll_rad = amplitude_rad;
+        at.b1_per_s = b1.max(1e-3);
+        at.has_moment = self.kind == RunKind::Forced;
+        at.order = survey.runs.len();
+        let times: Vec<f64> =
+            (0..(span_s / SAMPLE_S) as usize).map(|i| i as f64 * SAMPLE_S).collect();
+        let mut run = like.clone();
+        run.at = at;
+        run.moment_time_s = if at.has_moment { times.clone() } else { Vec::new() };
+        run.roll_time_s = times;
+        let mut own = vec![amplitude_rad, 0.0, 0.0];
+        if self.kind == RunKind::Forced {
+            own = vec![0.0; N_COURSE + 1];
+            own[1] = amplitude_rad;
+            own[N_COURSE - 1] = rolling_rad_s;
+        }
+        let mut base = like.base;
+        (base.natural_rad_s, base.b1_per_s, base.b3_s) = (w, b1, b3);
+        base.log_scale = fit.log_scale;
+        let state = RunState { own, base };
+        let known =
+            survey.runs.iter().find(|run| run.at.has_moment && run.at.kind == RunKind::Forced);
+        let stiffness = at.inertia_kg_m2 * w * w;
+        // A load cell resolves about a thousandth of the model's moment at half a radian.
+        let moment_sd = known.map_or(6e-4 * stiffness, |run| run.rough_noise[1]);
+        let noise = ChannelNoise { sd: [like.rough_noise[0], moment_sd], correlation: [0.0; 2] };
+        (run, state, noise)
+    }
+}
+
+/// The fit with the set of each extension that a new run would have.
+fn with_run(survey: &Survey, fit: &Fit, run: &Observation, state: RunState) -> Fit {
+    let mut fit = fit.clone();
+    for extension in &mut fit.extensions {
+        let slot = match extension.effect.scope {
+            crate::model::Scope::Campaign => Some(0),
+            crate::model::Scope::Condition => Some(survey.condition_of[0]),
+            crate::model::Scope::Run => None,
+        };
+        extension.slot_of.push(slot.filter(|_| (extension.effect.shows)(&run.at)));
+    }
+    fit.states.push(state);
+    fit
+}
+
+fn grown_survey(survey: &Survey, run: Observation) -> Survey {
+    let mut runs = survey.runs.clone();
+    runs.push(run);
+    let mut condition_of = survey.condition_of.clone();
+    condition_of.push(survey.condition_of[0]);
+    Survey { runs, conditions: survey.conditions.clone(), condition_of }
+}
+
+/// Half of the misfit that a rival would keep on a run that the favourite made.
+fn expected(survey: &Survey, favourite: &Fit, rival: &Settled, plan: &Plan, span_s: f64) -> f64 {
+    let (mut run, state, noise) = plan.observed(survey, favourite, span_s);
+    let truth = with_run(survey, favourite, &run, state.clone());
+    let last = survey.runs.len();
+    let readings = predict(&run, &state, &truth.terms(last));
+    let n_roll = run.roll_time_s.len();
+    (run.roll_rad, run.moment_n_m) = (readings[..n_roll].to_vec(), readings[n_roll..].to_vec());
+    let law = rival.fit.laws[survey.condition_of[0]].at(plan.froude);
+    let mut guess = state;
+    (guess.base.natural_rad_s, guess.base.b1_per_s, guess.base.b3_s) = (law[0], law[1], law[2]);
+    guess.base.log_scale = rival.fit.log_scale;
+    let fit = with_run(survey, &rival.fit, &run, guess.clone());
+    let summary = summarise(&run, &guess, &fit.terms(last), &[], &noise);
+    let grown = grown_survey(survey, run);
+    let mut summaries: Vec<Summary> = rival.summaries.clone();
+    summaries.push(summary);
+    let scatter = rival.solution.scatter;
+    let with = solve(&grown, &fit, &summaries, scatter).least_misfit;
+    let without = solve(survey, &rival.fit, &rival.summaries, scatter).least_misfit;
+    0.5 * (with - without).max(0.0)
+}
+
+/// The run that says most.
+pub(super) fn next_run(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<NextRun> {
+    let undecided = grown.entered.iter().enumerate().find(|(_, e)| !e.equivalent_to.is_empty());
+    if let Some((place, entered)) = undecided {
+        return parting(survey, grown, tank, place, entered.id, &entered.equivalent_to);
+    }
+    let always = grown
+        .last
+        .fit
+        .extensions
+        .iter()
+        .find(|extension| !extension.effect.always_equivalent.is_empty());
+    if let Some(extension) = always {
+        let mut parts = vec![extension.effect.id];
+        parts.extend(extension.effect.always_equivalent);
+        return Some(NextRun {
+            kind: "rest_reading",
+            froude: 0.0,
+            frequency_rad_s: None,
+            amplitude_deg: 0.0,
+            parts,
+            expected_log_bayes_factor: 0.0,
+            why: "no roll test parts a heel of the model from a zero of its channel; an \
+                  inclinometer read with the model at rest does"
+                .to_owned(),
+        });
+    }
+    informing(survey, grown, tank)
+}
+
+fn parting(
+    survey: &Survey,
+    grown: &Grown,
+    tank: &Tank,
+    place: usize,
+    favourite: &'static str,
+    rivals: &[&'static str],
+) -> Option<NextRun> {
+    let mut without = grown.last.fit.clone();
+    without.extensions.remove(place);
+    let scored = score(survey, &without, &grown.noise);
+    let settled: Vec<Settled> = rivals
+        .iter()
+        .filter_map(|id| scored.iter().find(|s| s.extension.effect.id == *id))
+        .map(|s| {
+            let mut fit = without.clone();
+            fit.extensions.push(s.extension.clone());
+            settle(survey, fit, &grown.noise)
+        })
+        .collect();
+    let plans = plans(tank, &survey.runs[0]);
+    let mut best: Option<(f64, Plan)> = None;
+    for (plan, span_s) in plans {
+        // The rival that is hardest to part decides.
+        let least = settled
+            .iter()
+            .map(|rival| expected(survey, &grown.last.fit, rival, &plan, span_s))
+            .fold(f64::INFINITY, f64::min);
+        if least.is_finite() && best.is_none_or(|(most, _)| least > 1.05 * most) {
+            best = Some((least, plan));
+        }
+    }
+    let (log, plan) = best?;
+    let mut parts = vec![favourite];
+    parts.extend(rivals);
+    let w = grown.last.fit.laws[survey.condition_of[0]].numbers[0];
+    Some(told(&plan, w, parts, log, |what| {
+        format!(
+            "{what} parts {favourite} from {} by an expected log Bayes factor of {log:.0}",
+            rivals.join(", ")
+        )
+    }))
+}
+
+fn told(
+    plan: &Plan,
+    natural_rad_s: f64,
+    parts: Vec<&'static str>,
+    log: f64,
+    why: impl Fn(&str) -> String,
+) -> NextRun {
+    let frequency_rad_s = (plan.kind == RunKind::Forced).then_some(plan.tuning * natural_rad_s);
+    let what = match frequency_rad_s {
+        Some(w) => format!(
+            "a forced run of {:.0} deg at {w:.2} rad/s ({}) and Fr {:.2}",
+            plan.amplitude_deg,
+            if (plan.tuning - 1.0).abs() < 0.01 { "at resonance" } else { "off resonance" },
+            plan.froude
+        ),
+        None => format!("a decay from {:.0} deg at Fr {:.2}", plan.amplitude_deg, plan.froude),
+    };
+    NextRun {
+        kind: if plan.kind == RunKind::Forced { "forced" } else { "decay" },
+        froude: plan.froude,
+        frequency_rad_s,
+        amplitude_deg: plan.amplitude_deg,
+        parts,
+        expected_log_bayes_factor: log,
+        why: why(&what),
+    }
+}
+
+/// The decay that narrows the law of damping most.
+fn informing(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<NextRun> {
+    let last = &grown.last;
+    let scatter = last.solution.scatter;
+    let law = N_LAW * survey.condition_of[0];
+    let volume = |covariance: &[Vec<f64>]| {
+        let (a, b, c) = (
+            covariance[law + 1][law + 1],
+            covariance[law + 2][law + 2],
+            covariance[law + 1][law + 2],
+        );
+        0.5 * (a * b - c * c).max(1e-300).ln()
+    };
+    let now = volume(&solve(survey, &last.fit, &last.summaries, scatter).covariance);
+    let mut best: Option<(f64, Plan)> = None;
+    for (plan, span_s) in plans(tank, &survey.runs[0]) {
+        if plan.kind == RunKind::Forced || plan.amplitude_deg < 0.0 {
+            continue;
+        }
+        let (mut run, state, noise) = plan.observed(survey, &last.fit, span_s);
+        let fit = with_run(survey, &last.fit, &run, state.clone());
+        let terms = fit.terms(survey.runs.len());
+        let readings = predict(&run, &state, &terms);
+        run.roll_rad = readings[..run.roll_time_s.len()].to_vec();
+        run.moment_n_m = Vec::new();
+        let mut summaries = last.summaries.clone();
+        summaries.push(summarise(&run, &state, &terms, &[], &noise));
+        let gain =
+            now - volume(&solve(&grown_survey(survey, run), &fit, &summaries, scatter).covariance);
+        if best.is_none_or(|(most, _)| gain > 1.05 * most) {
+            best = Some((gain, plan));
+        }
+    }
+    let (log, plan) = best?;
+    let w = last.fit.laws[survey.condition_of[0]].numbers[0];
+    Some(told(&plan, w, Vec::new(), log, |what| {
+        format!("no cause is undecided; {what} narrows b0 and kappa most")
+    }))
+}
