@@ -90,24 +90,29 @@ pub(super) const QUADRANT_DAMPING: Row = Row {
     },
 };
 
-/// A potentiometer that loses gain with the way it has turned since the pass began, for good.
-pub(super) const TIRED_SENSOR: Row = Row {
-    id: "invented.tired_sensor",
-    symbols: &["loss [1/rad]"],
-    draw: |size, _, _| vec![size * 0.015],
-    hide: |values| Box::new(TiredSensor(values[0])),
+/// A wiper that sticks at one place of the track, on the way up only, until it is torn loose;
+/// 0.3 degrees in the middle.
+pub(super) const STICKING_WIPER: Row = Row {
+    id: "invented.sticking_wiper",
+    symbols: &["width [rad]", "place [rad]"],
+    draw: |size, draw, _| vec![size * 0.3_f64.to_radians(), draw.between(-2.5, 2.5).to_radians()],
+    hide: |values| Box::new(StickingWiper { width: values[0], place: values[1] }),
 };
 
-struct TiredSensor(f64);
+struct StickingWiper {
+    width: f64,
+    place: f64,
+}
 
-impl Hidden for TiredSensor {
+impl Hidden for StickingWiper {
     fn transduce(&self, motion: &mut Motion, _pass: &Pass) {
-        let (mut way, mut before) = (0.0, motion.roll[0]);
+        let mut before = motion.roll[0];
         for roll in &mut motion.roll {
-            way += (*roll - before).abs();
+            let rising = *roll > before;
             before = *roll;
-            // Steps down at every tenth of a radian, as flakes leave the track.
-            *roll *= 1.0 - self.0 * (way * 10.0).floor() / 10.0;
+            if rising && (self.place..self.place + self.width).contains(roll) {
+                *roll = self.place;
+            }
         }
     }
 }

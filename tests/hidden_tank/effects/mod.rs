@@ -75,7 +75,7 @@ pub(crate) const INVENTED: [&Row; 7] = [
     &invented::RELAY,
     &invented::ODD_MODE,
     &invented::QUADRANT_DAMPING,
-    &invented::TIRED_SENSOR,
+    &invented::STICKING_WIPER,
     &invented::KNOCKS,
     &invented::LOST_KEEL,
 ];
