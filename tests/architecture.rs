@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The layers of `src`, top first; each may name those below it.
-const LAYERS: [&str; 14] = [
+const LAYERS: [&str; 16] = [
     "main",
     "command",
     "bench",
@@ -14,9 +14,11 @@ const LAYERS: [&str; 14] = [
     "catalogue",
     "reference",
     "tank",
+    "diagnosis",
     "results",
     "inverse",
     "campaign",
+    "model",
     "run",
     "roll",
     "hull",
@@ -35,7 +37,7 @@ const OWNERS: [(&str, &[&str]); 16] = [
     ("rand", &["src/inverse", "src/tank", "src/reference", "src/bench"]),
     ("rand_chacha", &["src/inverse", "src/tank", "src/reference", "src/bench"]),
     ("rand_distr", &["src/inverse", "src/tank", "src/reference", "src/bench"]),
-    ("toml", &["src/campaign", "src/tank"]),
+    ("toml", &["src/campaign", "src/tank", "src/model"]),
     ("csv", &["src/report", "replay/src"]),
     ("mcap", &["replay/src"]),
     ("tokio", &[]),

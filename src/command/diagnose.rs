@@ -1,13 +1,15 @@
 //! `rolltank diagnose`: what the simulation gets wrong, its cause, and what mending it gains.
 
+use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::{Exit, Failure};
-use crate::campaign;
+use crate::campaign::{self, Campaign};
 use crate::diagnosis::{self, Observation};
+use crate::model::model_file::ModelFile;
 use crate::pipeline::{self, Options};
 use crate::report;
 
@@ -19,6 +21,9 @@ pub(super) struct Arguments {
     /// Print JSON instead of sentences
     #[arg(long)]
     json: bool,
+    /// Write the extended model to results/model.toml of the campaign
+    #[arg(long)]
+    write_model: bool,
 }
 
 pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
@@ -37,6 +42,9 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
         tracing::warn!("run left out of the diagnosis: {reason}");
     }
     let diagnosis = diagnosis::diagnose(observations, &campaign.tank);
+    if let Some(diagnosis) = diagnosis.as_ref().filter(|_| arguments.write_model) {
+        write_model(&campaign, &diagnosis.model)?;
+    }
     let exit = if diagnosis.is_some() { Exit::Done } else { Exit::Incomplete };
     if arguments.json {
         out.write_all(report::diagnosis_json(diagnosis.as_ref()).as_bytes())?;
@@ -44,4 +52,15 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
         out.write_all(report::diagnosis_text(diagnosis.as_ref()).as_bytes())?;
     }
     Ok(exit)
+}
+
+/// Name of the model's file in the results of a campaign.
+const MODEL_FILE: &str = "model.toml";
+
+fn write_model(campaign: &Campaign, model: &ModelFile) -> Result<(), Failure> {
+    let folder = pipeline::results_folder(campaign);
+    let path = folder.join(MODEL_FILE);
+    let failed = |source| Failure::File { path: path.clone(), source };
+    fs::create_dir_all(&folder).map_err(failed)?;
+    fs::write(&path, model.to_toml()).map_err(failed)
 }

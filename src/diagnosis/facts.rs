@@ -1,5 +1,6 @@
-//! What a record shows without any model: its noise, its steps, lines in it, flat crests.
+//! What a record shows without any model: its noise, its steps, lines in it; flat crests are `clipping`.
 
+use super::clipping;
 use crate::model::{Facts, Line};
 use crate::run::Series;
 
@@ -14,15 +15,6 @@ fn fourth_differences(v: &[f64]) -> Vec<f64> {
     v.windows(5).map(|v| v[0] - 4.0 * v[1] + 6.0 * v[2] - 4.0 * v[3] + v[4]).collect()
 }
 
-/// The angle at which the crests may be cut off: just below the largest reading.
-///
-/// A crest that is not cut spends a tenth of its half cycle within 1.2 % of its top.
-pub(super) fn flat_top(roll_rad: &[f64], noise_rad: f64) -> Option<f64> {
-    let top = roll_rad.iter().map(|r| r.abs()).fold(0.0, f64::max);
-    let near = roll_rad.iter().filter(|r| r.abs() > top - 5.0 * noise_rad - 1e-3 * top).count();
-    (near >= 8).then_some(top - 2.5 * noise_rad)
-}
-
 /// Facts of a roll record as recorded.
 pub(super) fn of(
     roll: &Series,
@@ -33,7 +25,8 @@ pub(super) fn of(
     let n = roll.time_s.len();
     let sample_rate_hz = (n - 1) as f64 / (roll.time_s[n - 1] - roll.time_s[0]);
     let line = line(&roll.value, sample_rate_hz, rolling_rad_s);
-    Facts { quantum_rad, line, n_samples: n, sample_rate_hz, froude }
+    let clip = clipping::clip(roll, rolling_rad_s);
+    Facts { quantum_rad, line, n_samples: n, sample_rate_hz, froude, clip }
 }
 
 /// Samples in which a line is sought; more say no more than that it is there.

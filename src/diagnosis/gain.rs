@@ -8,14 +8,14 @@ use crate::inverse::estimate::Estimate;
 
 /// One run predicted by a model that never saw it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeldOut {
+pub(super) struct HeldOut {
     /// Root mean square of measured less predicted roll [rad].
-    pub rmse_rad: f64,
+    pub(super) rmse_rad: f64,
     /// Mean logarithm of the predictive density of a sample of either channel, in units of its
     /// noise.
-    pub log_density: f64,
+    pub(super) log_density: f64,
     /// Share of the moment's energy that is left unexplained [-].
-    pub unexplained_share: f64,
+    pub(super) unexplained_share: f64,
 }
 
 /// Every run predicted without its own help; nothing when there is one run.

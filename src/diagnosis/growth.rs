@@ -6,6 +6,8 @@ use super::score::{Scored, score};
 use super::settle::{Settled, settle};
 use super::solve::{Layout, scatters, solve};
 use super::survey::{Extension, Fit, Survey};
+use crate::model::effects;
+use crate::model::{Acts, Layer};
 
 /// Least logarithm of a Bayes factor at which an effect may enter: one in a thousand by chance.
 pub(super) const ENTERS: f64 = 7.0;
@@ -18,7 +20,7 @@ const ENOUGH: f64 = 0.2;
 /// Most effects of a model.
 const MOST: usize = 5;
 /// Effects that are fitted in full at each step.
-const FITTED: usize = 7;
+const FITTED: usize = 6;
 
 /// One effect in the model with what cannot be told from it.
 #[derive(Debug, Clone)]
@@ -57,7 +59,7 @@ pub(super) fn grow(survey: &Survey) -> Grown {
     let mut entered: Vec<Entered> = Vec::new();
     let (mut ranking, mut implausible) = (Vec::new(), Vec::new());
     while entered.len() < MOST {
-        let Some(step) = step(survey, &current, &noise) else { break };
+        let Some(step) = step(survey, &current, &noise, &entered) else { break };
         if entered.is_empty() {
             ranking = step.ranking.clone();
         }
@@ -85,7 +87,12 @@ struct Step {
 }
 
 /// Tries to add one effect; none when no effect is worth a look.
-fn step(survey: &Survey, before: &Settled, noise: &[ChannelNoise]) -> Option<Step> {
+fn step(
+    survey: &Survey,
+    before: &Settled,
+    noise: &[ChannelNoise],
+    entered: &[Entered],
+) -> Option<Step> {
     let scores = score(survey, &before.fit, noise);
     let mut ranking: Vec<(&'static str, f64)> =
         scores.iter().map(|s| (s.extension.effect.id, s.log_bayes_factor)).collect();
@@ -105,7 +112,7 @@ fn step(survey: &Survey, before: &Settled, noise: &[ChannelNoise]) -> Option<Ste
     let noise = survey.noise(&best.fit);
     let current = settle(survey, before.fit.clone(), &noise);
     let scores = score(survey, &current.fit, &noise);
-    let worth = 0.05 * scores.first().map_or(0.0, |s| s.log_bayes_factor).max(0.0);
+    let worth = 0.1 * scores.first().map_or(0.0, |s| s.log_bayes_factor).max(0.0);
     let mut chosen: Vec<Scored> =
         scores.iter().take(FITTED).filter(|s| s.log_bayes_factor >= worth).cloned().collect();
     // What explained most before the noise had a memory is never forgotten.
@@ -131,7 +138,7 @@ fn step(survey: &Survey, before: &Settled, noise: &[ChannelNoise]) -> Option<Ste
         .map(|one| (one.id, one.settled.log_evidence - current.log_evidence))
         .filter(|(_, log)| *log > ENTERS)
         .collect();
-    let won = winner(survey, &current, plausible);
+    let won = winner(survey, &current, plausible, entered);
     Some(Step { won, noise, ranking, implausible })
 }
 
@@ -140,21 +147,88 @@ fn sort(tried: &mut [Tried]) {
 }
 
 /// The best of the tried effects, if it may enter, with those that cannot be told from it.
-fn winner(survey: &Survey, current: &Settled, plausible: Vec<Tried>) -> Option<(Settled, Entered)> {
+fn winner(
+    survey: &Survey,
+    current: &Settled,
+    plausible: Vec<Tried>,
+    known: &[Entered],
+) -> Option<(Settled, Entered)> {
     let best = plausible.first()?;
     let log_bayes_factor = best.settled.log_evidence - current.log_evidence;
     if log_bayes_factor < ENTERS || !explains_enough(survey, &current.fit, &best.settled.fit) {
         return None;
     }
     let explained = explained(survey, current, &best.settled);
-    let room = SAME.max(SAME_SHARE * explained);
+    // What an approximate effect leaves of itself is no other effect.
+    let crumbs = known.iter().filter(|entered| is_approximate(entered.id));
+    if crumbs.map(|entered| SAME_SHARE * entered.explained).any(|crumb| explained < crumb) {
+        return None;
+    }
     let equivalent_to = plausible[1..]
         .iter()
-        .filter(|one| 2.0 * (best.settled.log_evidence - one.settled.log_evidence) < room)
+        .filter(|one| is_same(survey, current, &best.settled, &one.settled))
         .map(|one| one.id)
         .collect();
     let entered = Entered { id: best.id, log_bayes_factor, explained, equivalent_to };
     plausible.into_iter().next().map(|best| (best.settled, entered))
+}
+
+/// Whether these runs cannot tell a rival from the favourite: it is as probable, or explains all
+/// but a hundredth of the same.
+fn is_same(survey: &Survey, before: &Settled, favourite: &Settled, rival: &Settled) -> bool {
+    let behind = favourite.log_evidence - rival.log_evidence;
+    let gained = rival.log_evidence - before.log_evidence;
+    let (most, as_well) = (explained(survey, before, favourite), explained(survey, before, rival));
+    let explains_it = gained > ENTERS && most - as_well < SAME.max(SAME_SHARE * most);
+    (2.0 * behind < SAME && gained > 0.5 * ENTERS) || explains_it
+}
+
+/// Whether the form of an effect stands for many that differ a little: waves, memories, hands.
+fn is_approximate(id: &str) -> bool {
+    effects::effect(id).is_some_and(|effect| {
+        effect.layer == Layer::Tank || matches!(effect.acts, Acts::Lagging(_))
+    })
+}
+
+/// A model with one effect fewer, where another reading of a cause makes it needless.
+fn simpler(
+    survey: &Survey,
+    current: &Settled,
+    entered: &[Entered],
+    noise: &[ChannelNoise],
+) -> Option<(Settled, Vec<Entered>)> {
+    for (place, one) in entered.iter().enumerate() {
+        for needless in (0..entered.len()).filter(|other| *other != place) {
+            let mut less = current.fit.clone();
+            for taken in [place.max(needless), place.min(needless)] {
+                less.extensions.remove(taken);
+            }
+            let without = settle(survey, less, noise);
+            let scores = score(survey, &without.fit, noise);
+            for id in &one.equivalent_to {
+                let Some(reading) = scores.iter().find(|s| s.extension.effect.id == *id) else {
+                    continue;
+                };
+                let fit = with(&without.fit, reading.extension.clone());
+                let settled = settle(survey, fit, noise);
+                if settled.log_evidence > current.log_evidence - 0.25 * SAME
+                    && is_plausible(survey, &settled)
+                {
+                    let mut fit = settled.fit;
+                    let newest = fit.extensions.pop()?;
+                    let at = place.min(fit.extensions.len());
+                    fit.extensions.insert(at, newest);
+                    let mut kept = entered.to_vec();
+                    kept[place] = Entered { id, equivalent_to: vec![one.id], ..one.clone() };
+                    let moved = kept.remove(place);
+                    kept.remove(if needless > place { needless - 1 } else { needless });
+                    kept.insert(at.min(kept.len()), moved);
+                    return Some((settle(survey, fit, noise), kept));
+                }
+            }
+        }
+    }
+    None
 }
 
 /// The fall of the misfit from one model to the next when no run may leave its law: what scatter
@@ -192,6 +266,9 @@ fn check_backward(
     noise: &[ChannelNoise],
 ) -> (Settled, Vec<Entered>) {
     let mut current = settle(survey, grown.fit, noise);
+    while let Some((fewer, kept)) = simpler(survey, &current, &entered, noise) {
+        (current, entered) = (fewer, kept);
+    }
     let mut e = 0;
     while e < entered.len() {
         let mut less = current.fit.clone();
@@ -204,7 +281,6 @@ fn check_backward(
             continue;
         }
         let explained = explained(survey, &without, &current);
-        let room = SAME.max(SAME_SHARE * explained);
         let rivals: Vec<Scored> = score(survey, &without.fit, noise)
             .into_iter()
             .filter(|s| {
@@ -218,7 +294,7 @@ fn check_backward(
         entered[e].equivalent_to = tried
             .iter()
             .filter(|one| is_plausible(survey, &one.settled))
-            .filter(|one| 2.0 * (current.log_evidence - one.settled.log_evidence) < room)
+            .filter(|one| is_same(survey, &without, &current, &one.settled))
             .map(|one| one.id)
             .collect();
         let better = tried

@@ -134,18 +134,24 @@ impl Observation {
             has_moment: !moment.time_s.is_empty(),
             n_runs: 1,
             initial_roll_rad: record.roll_rad[0] - mean,
-            flat_top_rad: facts::flat_top(&record.roll_rad, noise_rad),
         };
         let moment_noise =
             if moment.value.is_empty() { 1.0 } else { facts::rough_noise(&moment.value) };
+        let quantum_rad = record.quantum_rad;
+        let facts = facts::of(&run.run.roll, quantum_rad, rolling_rad_s, run.froude);
+        // What a channel reads at the end of its range is no reading of the roll.
+        let end_rad = facts.clip.map_or(f64::INFINITY, |clip| clip.level_rad - 3.0 * noise_rad);
+        let read = |(t, r): (&f64, &f64)| ((r - mean).abs() < end_rad).then_some((*t, *r));
+        let (roll_time_s, roll_rad) =
+            record.time_s.iter().zip(&record.roll_rad).filter_map(read).unzip();
         Self {
             id: run.id.clone(),
             condition: run.condition.clone(),
-            facts: facts::of(&run.run.roll, record.quantum_rad, rolling_rad_s, run.froude),
+            facts,
             at,
             origin_s: record.origin_s,
-            roll_time_s: record.time_s.clone(),
-            roll_rad: record.roll_rad.clone(),
+            roll_time_s,
+            roll_rad,
             moment_time_s: moment.time_s,
             moment_n_m: moment.value,
             rough_noise: [noise_rad, moment_noise],

@@ -18,9 +18,9 @@ pub(super) fn causes(survey: &Survey) -> Vec<Cause> {
         let seen: Vec<Option<Seen>> = able.map(|run| sees(&run.facts)).collect();
         let total: f64 = seen.iter().flatten().map(|s| s.log_bayes_factor).sum();
         let n_seen = seen.iter().flatten().filter(|s| s.log_bayes_factor > 0.0).count();
-        // A property of the chain shows in most of its records, not in one.
-        if total > SURE && 2 * n_seen >= seen.len() {
-            let is_line = effect.strengths.iter().any(|p| p.unit == "Hz");
+        let is_line = effect.strengths.iter().any(|p| p.unit == "Hz");
+        // A line belongs to the chain and shows in most of its records, not in one.
+        if total > SURE && (!is_line || 2 * n_seen >= seen.len()) {
             found.push((total, cause(effect, &seen, total), is_line));
         }
     }

@@ -1,7 +1,7 @@
 //! All runs solved together: laws and effects common, each run's scatter about the law marginal.
 
 use super::elimination::{Eliminated, Products};
-use super::run_fit::{N_BASE, Summary};
+use super::run_fit::Summary;
 use super::survey::{Fit, N_LAW, Survey};
 
 /// How far runs of one condition lie from their law, as shares of its numbers.
@@ -335,9 +335,6 @@ pub(super) fn moved(
     }
     next
 }
-
-/// Number of base columns, for those who look into a run's summary.
-pub(super) const BASE_COLUMNS: usize = N_BASE;
 
 impl Solution {
     /// Largest change of a run's deviation from its law that the solution asks for, squared, in

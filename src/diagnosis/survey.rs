@@ -87,11 +87,6 @@ impl Survey {
         Self { runs, conditions, condition_of }
     }
 
-    /// Whether some run has its moment recorded while the rod drives it.
-    pub(super) fn has_forced(&self) -> bool {
-        self.runs.iter().any(|run| run.at.kind == crate::run::RunKind::Forced)
-    }
-
     /// The fit that the identifications of the runs suggest.
     pub(super) fn first_fit(&self) -> Fit {
         let laws = (0..self.conditions.len())

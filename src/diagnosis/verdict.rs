@@ -12,6 +12,7 @@ use super::survey::{N_LAW, Survey};
 use crate::campaign::Tank;
 use crate::inverse::estimate::Estimate;
 use crate::model::effects;
+use crate::model::model_file::{ConditionModel, EffectModel, ModelFile};
 
 /// The verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,10 +100,12 @@ pub struct Diagnosis {
     pub left_after: Vec<Leftover>,
     /// What to tow next.
     pub next_run: Option<NextRun>,
+    /// The extended model.
+    pub model: ModelFile,
 }
 
 /// Share of what the base model leaves beyond which causes are no whole story.
-const MOST_LEFT: f64 = 0.3;
+const MOST_LEFT: f64 = 0.2;
 
 /// Diagnoses the runs of a campaign; none without runs.
 pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
@@ -133,6 +136,7 @@ pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
         Verdict::Named
     };
     let next_run = next_run(&survey, &grown, tank);
+    let model = model(&survey, &grown, &causes);
     let mut implausible: Vec<&'static str> = grown.implausible.iter().map(|(id, _)| *id).collect();
     implausible.dedup();
     Some(Diagnosis {
@@ -146,6 +150,7 @@ pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
         left_before,
         left_after,
         next_run,
+        model,
     })
 }
 
@@ -229,4 +234,27 @@ fn kappa(settled: &Settled, condition: usize) -> Estimate {
     let variance = covariance[slope][slope] - 2.0 * kappa * covariance[zero][slope]
         + kappa * kappa * covariance[zero][zero];
     Estimate::normal(kappa, variance.max(0.0).sqrt() / b0.abs())
+}
+
+/// The laws, and the effects that were named.
+fn model(survey: &Survey, grown: &Grown, causes: &[Cause]) -> ModelFile {
+    let named = |id: &str| causes.iter().any(|cause| cause.effect == id);
+    // Without named causes the laws are those of the base model.
+    let fit = if causes.is_empty() { &grown.base.fit } else { &grown.last.fit };
+    let law = |(name, law): (&String, &super::survey::Law)| {
+        let [natural_frequency_rad_s, b0_per_s, bk, b3_s] = law.numbers;
+        let kappa = bk / b0_per_s;
+        ConditionModel { name: name.clone(), natural_frequency_rad_s, b0_per_s, kappa, b3_s }
+    };
+    let conditions = survey.conditions.iter().zip(&fit.laws).map(law).collect();
+    let effects = fit
+        .extensions
+        .iter()
+        .filter(|extension| named(extension.effect.id))
+        .map(|extension| EffectModel {
+            id: extension.effect.id.to_owned(),
+            sets: extension.slots.clone(),
+        })
+        .collect();
+    ModelFile { conditions, effects }
 }

@@ -92,8 +92,6 @@ pub struct Circumstances {
     pub n_runs: usize,
     /// Roll at the start [rad].
     pub initial_roll_rad: f64,
-    /// Angle [rad] at which several crests in a row are flat, if any.
-    pub flat_top_rad: Option<f64>,
 }
 
 /// What a roll record shows without any model.
@@ -109,6 +107,19 @@ pub struct Facts {
     pub sample_rate_hz: f64,
     /// Froude number of the run [-].
     pub froude: f64,
+    /// Crests that are cut off.
+    pub clip: Option<Clip>,
+}
+
+/// Crests that are flat at one level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clip {
+    /// The level [rad].
+    pub level_rad: f64,
+    /// Its standard deviation [rad].
+    pub sd_rad: f64,
+    /// Logarithm of the Bayes factor against round crests [-].
+    pub log_bayes_factor: f64,
 }
 
 /// One frequency that stands out of the noise of a channel.

@@ -8,7 +8,10 @@ pub mod effect;
 pub mod effects;
 pub mod free;
 pub mod imposed;
+pub mod model_file;
 pub mod term;
 
-pub use effect::{Acts, Circumstances, Effect, Facts, Instant, Line, Parameter, Scope, Seen};
+pub use effect::{
+    Acts, Circumstances, Clip, Effect, Facts, Instant, Layer, Line, Parameter, Scope, Seen,
+};
 pub use term::{Base, Term};

@@ -1,52 +1,175 @@
 //! `diagnose --json`: the versioned document that other programs read.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
-use crate::diagnosis::{Diagnosis, Verdict};
+use crate::diagnosis::{Bias, Cause, Change, Diagnosis, Gain, Leftover, NextRun, Verdict};
 use crate::inverse::estimate::Estimate;
+use crate::model::effects::UNTESTABLE;
 
-/// The document; a campaign without runs has no causes and the verdict `unexplained`.
+/// Name and version of the contract.
+const SCHEMA_NAME: &str = "rolltank.diagnosis/1";
+
+/// The JSON Schema that every [`diagnosis_json`] keeps.
+pub const DIAGNOSIS_SCHEMA: &str = include_str!("diagnosis.schema.json");
+
+/// The document; a campaign without runs has neither verdict nor causes.
 pub fn diagnosis_json(diagnosis: Option<&Diagnosis>) -> String {
-    let document = diagnosis.map_or_else(
-        || json!({"schema": SCHEMA, "verdict": "unexplained", "causes": [], "ranking": []}),
-        document,
-    );
+    let untestable: Vec<Value> =
+        UNTESTABLE.iter().map(|(effect, why)| json!({"effect": effect, "why": why})).collect();
+    let document = match diagnosis {
+        None => json!({
+            "schema": SCHEMA_NAME, "verdict": null, "causes": [], "suspects": [],
+            "implausible": [], "ranking": [], "gain": null, "bias": null, "next_run": null,
+            "residual": null, "untestable": untestable,
+        }),
+        Some(diagnosis) => json!({
+            "schema": SCHEMA_NAME,
+            "verdict": word(diagnosis.verdict),
+            "causes": diagnosis.causes.iter().map(cause).collect::<Vec<_>>(),
+            "suspects": diagnosis.suspects,
+            "implausible": diagnosis.implausible,
+            "ranking": ranking(diagnosis),
+            "gain": diagnosis.gain.as_ref().map(gain),
+            "bias": bias(&diagnosis.bias),
+            "next_run": diagnosis.next_run.as_ref().map(next_run),
+            "residual": residual(diagnosis),
+            "untestable": untestable,
+        }),
+    };
     format!("{document:#}\n")
 }
 
-const SCHEMA: &str = "rolltank.diagnosis/1";
-
-fn document(diagnosis: &Diagnosis) -> Value {
-    let causes: Vec<Value> = diagnosis
-        .causes
-        .iter()
-        .map(|cause| {
-            let parameters: Vec<Value> = cause
-                .parameters
-                .iter()
-                .map(|(symbol, unit, estimate)| {
-                    let Estimate { mean, sd, lo95, hi95 } = estimate;
-                    json!({"symbol": symbol, "unit": unit, "mean": mean, "sd": sd, "lo95": lo95, "hi95": hi95})
-                })
-                .collect();
-            json!({
-                "effect": cause.effect,
-                "equation": cause.equation,
-                "log10_bayes_factor": log10(cause.log_bayes_factor),
-                "parameters": parameters,
-                "equivalent_to": cause.equivalent_to,
-            })
-        })
-        .collect();
-    let ranking: Vec<Value> = diagnosis
-        .ranking
-        .iter()
-        .map(|(effect, log)| json!({"effect": effect, "log10_bayes_factor": log10(*log)}))
-        .collect();
-    json!({"schema": SCHEMA, "verdict": word(diagnosis.verdict), "causes": causes, "ranking": ranking})
+fn quantity(estimate: &Estimate) -> Value {
+    let Estimate { mean, sd, lo95, hi95 } = estimate;
+    json!({"mean": mean, "sd": sd, "lo95": lo95, "hi95": hi95})
 }
 
-fn log10(natural: f64) -> f64 {
+fn cause(cause: &Cause) -> Value {
+    let parameters: Vec<Value> = cause
+        .parameters
+        .iter()
+        .map(|(symbol, unit, estimate)| {
+            let mut object = quantity(estimate);
+            object["symbol"] = json!(symbol);
+            object["unit"] = json!(unit);
+            object
+        })
+        .collect();
+    json!({
+        "effect": cause.effect,
+        "equation": cause.equation,
+        "log10_bayes_factor": log10(cause.log_bayes_factor),
+        "parameters": parameters,
+        "equivalent_to": cause.equivalent_to,
+    })
+}
+
+fn ranking(diagnosis: &Diagnosis) -> Vec<Value> {
+    let line =
+        |(effect, log): &(&str, f64)| json!({"effect": effect, "log10_bayes_factor": log10(*log)});
+    diagnosis.ranking.iter().map(line).collect()
+}
+
+/// A figure before and after: means over runs with their 95 % intervals.
+fn means(change: &Change) -> Value {
+    json!({
+        "before": change.before.mean,
+        "after": change.after.mean,
+        "before_95": [change.before.lo95, change.before.hi95],
+        "after_95": [change.after.lo95, change.after.hi95],
+    })
+}
+
+fn gain(gain: &Gain) -> Value {
+    json!({
+        "held_out_rmse_deg": means(&gain.rmse_deg),
+        "held_out_log_predictive_density": means(&gain.log_density),
+        "log_predictive_density_gain": quantity(&gain.log_density_gain),
+        "unexplained_moment_share": means(&gain.unexplained_share),
+    })
+}
+
+fn quantities(change: &Change) -> Value {
+    json!({"before": quantity(&change.before), "after": quantity(&change.after)})
+}
+
+/// The first condition under the contract's keys, and every condition under its name.
+fn bias(all: &[Bias]) -> Value {
+    let one = |bias: &Bias| {
+        let mut object = Map::new();
+        object.insert("b1_per_s".to_owned(), quantities(&bias.b1_per_s));
+        object.insert("b3_s".to_owned(), quantities(&bias.b3_s));
+        let kappa = bias.kappa.as_ref().map_or(Value::Null, quantities);
+        object.insert("kappa".to_owned(), kappa);
+        Value::Object(object)
+    };
+    let Some(first) = all.first() else { return Value::Null };
+    let mut whole = one(first);
+    let by_condition: Map<String, Value> =
+        all.iter().map(|bias| (bias.condition.clone(), one(bias))).collect();
+    whole["by_condition"] = Value::Object(by_condition);
+    whole
+}
+
+fn next_run(next: &NextRun) -> Value {
+    json!({
+        "kind": next.kind,
+        "froude": next.froude,
+        "frequency_rad_s": next.frequency_rad_s,
+        "amplitude_deg": next.amplitude_deg,
+        "parts": next.parts,
+        "expected_log10_bayes_factor": log10(next.expected_log_bayes_factor),
+        "why": next.why,
+    })
+}
+
+fn residual(diagnosis: &Diagnosis) -> Value {
+    let line = |left: &Leftover| {
+        json!({
+            "run": left.run,
+            "channel": left.channel,
+            "rms": left.rms,
+            "share": left.share,
+            "is_sure": left.is_sure(),
+            "band_z": left.band_z,
+            "line_log_odds": left.line_log_odds,
+            "whiteness_z": left.whiteness_z,
+            "frequency_rad_s": left.frequency_rad_s,
+            "time_s": left.time_s,
+            "amplitude_rad": left.amplitude_rad,
+        })
+    };
+    json!({
+        "summary": where_it_lives(&diagnosis.left_after),
+        "before": diagnosis.left_before.iter().map(line).collect::<Vec<_>>(),
+        "after": diagnosis.left_after.iter().map(line).collect::<Vec<_>>(),
+    })
+}
+
+/// Where most is left, in words.
+pub(super) fn where_it_lives(left: &[Leftover]) -> String {
+    let most =
+        left.iter().filter(|left| left.is_sure()).max_by(|a, b| a.excess.total_cmp(&b.excess));
+    most.map_or_else(
+        || "nothing but noise is left".to_owned(),
+        |most| {
+            let n_sure = left.iter().filter(|left| left.is_sure()).count();
+            format!(
+                "structure is left in {n_sure} of {} channels; most in the {} of run {}: about \
+                 {:.1} s of its recording, strongest at {:.2} rad/s, at roll amplitudes near \
+                 {:.1} deg",
+                left.len(),
+                most.channel,
+                most.run,
+                most.time_s,
+                most.frequency_rad_s,
+                most.amplitude_rad.to_degrees()
+            )
+        },
+    )
+}
+
+pub(super) fn log10(natural: f64) -> f64 {
     natural / std::f64::consts::LN_10
 }
 

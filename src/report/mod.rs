@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 
 pub use csv_tables::csv_tables;
 pub use damping_table::damping_table;
-pub use diagnosis_json::diagnosis_json;
+pub use diagnosis_json::{DIAGNOSIS_SCHEMA, diagnosis_json};
 pub use diagnosis_text::diagnosis_text;
 pub use json::{IDENTIFICATION_SCHEMA, identification_json};
 

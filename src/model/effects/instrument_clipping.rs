@@ -1,22 +1,28 @@
 //! The roll channel saturates at the end of its range.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, each};
+use crate::model::effect::{Acts, Effect, Facts, Layer, Parameter, Scope, Seen, any_run, one_node};
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
     id: "instrument.clipping",
     layer: Layer::Instrument,
     equation: "phi between -c and c",
-    strengths: &[Parameter::new("s", "-", 1.0, [0.8, 1.2])],
-    shapes: &[Parameter::new("c", "rad", 0.0, [0.02, 1.0])],
-    nodes: |run| run.flat_top_rad.map_or(Vec::new(), |top| each(&[top])),
+    strengths: &[Parameter::new("c", "rad", 0.2, [0.02, 1.0])],
+    shapes: &[],
+    nodes: one_node,
     scope: Scope::Campaign,
     shows: any_run,
-    acts: Acts::Roll(|all, p| all.iter().map(|i| p[0] * beyond(i.roll_rad, p[1])).collect()),
+    acts: Acts::Record(seen),
     always_equivalent: &[],
     reference: "data sheets",
 };
 
-fn beyond(roll_rad: f64, end_rad: f64) -> f64 {
-    roll_rad.clamp(-end_rad, end_rad) - roll_rad
+/// Crests that are flat where the others of the run are round; their samples take no part in any
+/// fit.
+fn seen(facts: &Facts) -> Option<Seen> {
+    let clip = facts.clip?;
+    Some(Seen {
+        log_bayes_factor: clip.log_bayes_factor,
+        values: vec![(clip.level_rad, clip.sd_rad)],
+    })
 }

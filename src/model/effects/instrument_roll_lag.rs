@@ -19,7 +19,7 @@ pub(super) const EFFECT: Effect = Effect {
 
 /// First-order lag of a course that is straight between samples.
 fn lag(all: &[Instant<'_>], p: &[f64]) -> Vec<f64> {
-    let tau_s = p[0].max(0.0);
+    let tau_s = p[0];
     let Some(first) = all.first() else { return Vec::new() };
     let mut behind = -tau_s * first.rate_rad_per_s;
     let mut lost = vec![behind];

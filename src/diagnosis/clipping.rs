@@ -1,0 +1,91 @@
+//! Crests that are cut off at the end of a channel's range, told by their missing curvature.
+
+use super::facts::rough_noise;
+use crate::model::Clip;
+use crate::run::Series;
+
+/// A crest reaches from this share of its top.
+const CREST_FROM: f64 = 0.93;
+/// Curvature below this share of a round crest's is none.
+const FLAT: f64 = 0.35;
+/// Crests within this share of the largest reading may be at the end of the range.
+const NEAR_TOP: f64 = 0.97;
+
+/// The level at which crests are flat, if two or more are or one is without doubt.
+pub(super) fn clip(roll: &Series, rolling_rad_s: f64) -> Option<Clip> {
+    let values = &roll.value;
+    let noise_rad = rough_noise(values);
+    let tail = &values[values.len() - (values.len() / 5).max(1)..];
+    let middle = tail.iter().sum::<f64>() / tail.len() as f64;
+    let top = values.iter().map(|v| (v - middle).abs()).fold(0.0, f64::max) - 2.0 * noise_rad;
+    let mut levels: Vec<(f64, f64)> = Vec::new();
+    let mut log_bayes_factor = 0.0;
+    let mut start = 0;
+    while start < values.len() {
+        let sign = (values[start] - middle).signum();
+        let inside = |v: f64| sign * (v - middle) > CREST_FROM * top;
+        let length = values[start..].iter().take_while(|v| inside(**v)).count();
+        // A crest that begins with the record may still be in the hand that lets go.
+        if length >= 6 && start > 0 && start + length < values.len() {
+            let crest = &values[start..start + length];
+            let inner = &crest[length / 4..length - length / 4];
+            let level = inner.iter().map(|v| sign * (v - middle)).sum::<f64>() / inner.len() as f64;
+            let times = &roll.time_s[start + length / 4..start + length - length / 4];
+            let (curvature, sd) = curvature(times, inner, noise_rad);
+            let round = -sign * rolling_rad_s.powi(2) * level;
+            if level > NEAR_TOP * top && inner.len() >= 4 {
+                let off = |expected: f64| ((curvature - expected) / sd).powi(2);
+                let log = 0.5 * (off(round).min(400.0) - off(0.0).min(400.0)) - 2.0;
+                if (curvature / round) < FLAT && log > 0.0 {
+                    levels.push((level, noise_rad / (inner.len() as f64).sqrt()));
+                    log_bayes_factor += log;
+                }
+            }
+        }
+        start += length.max(1);
+    }
+    let n = levels.len() as f64;
+    let level_rad = levels.iter().map(|l| l.0).sum::<f64>() / n;
+    let sd_rad = levels.iter().map(|l| l.1 * l.1).sum::<f64>().sqrt() / n;
+    let agree = levels.iter().all(|l| (l.0 - level_rad).abs() < 4.0 * l.1 + 2e-3 * level_rad);
+    let sure = !levels.is_empty() && agree && log_bayes_factor > 10.0;
+    sure.then_some(Clip { level_rad, sd_rad, log_bayes_factor })
+}
+
+/// Second derivative of a parabola through the samples, with its standard deviation.
+fn curvature(times: &[f64], values: &[f64], noise_rad: f64) -> (f64, f64) {
+    let n = times.len() as f64;
+    let centre = times.iter().sum::<f64>() / n;
+    let moment = |p: i32| times.iter().map(|t| (t - centre).powi(p)).sum::<f64>();
+    let (m2, m3, m4) = (moment(2), moment(3), moment(4));
+    // The square less its projection on a straight line.
+    let part = |t: f64| (t - centre).powi(2) - m2 / n - m3 / m2 * (t - centre);
+    let norm = m4 - m2 * m2 / n - m3 * m3 / m2;
+    let slope: f64 = times.iter().zip(values).map(|(t, v)| part(*t) * v).sum::<f64>() / norm;
+    (2.0 * slope, 2.0 * noise_rad / norm.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn decay(end_rad: f64) -> Series {
+        let time_s: Vec<f64> = (0..1500).map(|i| f64::from(i) * 0.01).collect();
+        let noise = |i: usize| 8e-4 * (((i * 7919) % 1000) as f64 / 500.0 - 1.0);
+        let value = time_s
+            .iter()
+            .enumerate()
+            .map(|(i, t)| {
+                (0.26 * (-0.15 * t).exp() * (6.9 * t).cos()).clamp(-end_rad, end_rad) + noise(i)
+            })
+            .collect();
+        Series { time_s, value }
+    }
+
+    #[test]
+    fn cut_crests_are_seen_with_their_level_and_round_ones_are_not() {
+        assert_eq!(clip(&decay(1.0), 6.9), None);
+        let found = clip(&decay(0.2), 6.9).expect("flat crests");
+        assert!((found.level_rad - 0.2).abs() < 5e-4, "{found:?}");
+    }
+}
