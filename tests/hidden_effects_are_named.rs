@@ -9,6 +9,7 @@ use super::hidden_tank::draw::Draw;
 use super::hidden_tank::effects::INVENTED;
 use super::hidden_tank::fit::{INDISTINGUISHABLE, left_by, misfit};
 use super::hidden_tank::folder::play;
+use super::hidden_tank::next_run::towed;
 use super::hidden_tank::plan::RunSet;
 use super::hidden_tank::score::{Outcome, score};
 use super::hidden_tank::verdict::{Verdict, diagnose};
@@ -55,15 +56,18 @@ fn bearing_friction_is_named_from_decays_alone() {
 }
 
 #[test]
-fn a_cubic_restoring_is_named_with_its_class_from_decays_alone() {
+fn a_cubic_restoring_is_named_with_its_class_and_the_run_that_parts_it() {
     let seed = drawn_seed("cubic restoring");
-    let (_, verdict) = diagnosed(RunSet::Rest, &["restoring.cubic"], 1.0, seed);
+    let (campaign, verdict) = diagnosed(RunSet::Rest, &["restoring.cubic"], 1.0, seed);
     let class = ["restoring.cubic", "inertia.amplitude"];
     assert_eq!(verdict.word, "ambiguous");
     let [cause] = verdict.causes.as_slice() else { panic!("{:?}", verdict.causes) };
     let mut told = vec![cause.effect.as_str()];
     told.extend(cause.equivalent_to.iter().map(String::as_str));
     assert!(class.iter().all(|id| told.contains(id)), "{told:?}");
+    // The run that it asks for parts the two.
+    let program = Path::new(env!("CARGO_BIN_EXE_rolltank"));
+    assert_eq!(towed(&campaign, &verdict, program), Some(Outcome::Named), "{}", verdict.json);
 }
 
 #[test]

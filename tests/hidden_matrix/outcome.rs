@@ -9,6 +9,7 @@ use crate::coverage::covered;
 use crate::hidden_tank::campaign::{Asked, Campaign};
 use crate::hidden_tank::fit::{INDISTINGUISHABLE, left_by, misfit};
 use crate::hidden_tank::folder::play;
+use crate::hidden_tank::next_run::towed;
 use crate::hidden_tank::score::{Outcome, score};
 use crate::hidden_tank::timeline::Timeline;
 use crate::hidden_tank::verdict::{Verdict, diagnose};
@@ -63,6 +64,7 @@ pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
     line["values"] =
         campaign.effects.iter().map(|effect| json!(effect.values)).collect::<Vec<_>>().into();
     line["covered"] = covered(&campaign, &verdict.json["causes"]);
+    line["towed"] = json!(towed(&campaign, &verdict, program).map(word));
     tell(&mut line, &verdict);
     line
 }

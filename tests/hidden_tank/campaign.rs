@@ -5,7 +5,7 @@ use super::draw::Draw;
 use super::effect::{Hiding, Row};
 use super::instruments::{Rows, record};
 use super::motion::simulate;
-use super::plan::{Pass, RunSet};
+use super::plan::{Action, Pass, RunSet};
 
 /// Integration step of what is recorded [s].
 const STEP_S: f64 = 0.005;
@@ -42,6 +42,7 @@ impl Asked {
 }
 
 /// A campaign before it is played.
+#[derive(Clone)]
 pub(crate) struct Campaign {
     /// What was asked.
     pub(crate) asked: Asked,
@@ -94,9 +95,18 @@ impl Campaign {
         if pass.other_hull { &self.other } else { &self.base }
     }
 
+    /// The campaign with one more run at the end of the day.
+    pub(crate) fn with_run(&self, froude: f64, action: Action) -> Self {
+        let mut longer = self.clone();
+        let (index, scatter) = (self.passes.len(), self.asked.scatter);
+        let mut draw = Draw::named(&format!("{} and pass {index}", self.asked.name()));
+        longer.passes.push(Pass::drawn(index, froude, action, scatter, &mut draw));
+        longer
+    }
+
     /// The load cell is logged: in every pass of a campaign that has a rod.
     pub(crate) fn has_force(&self) -> bool {
-        self.asked.set == RunSet::Forced
+        self.passes.iter().any(Pass::is_forced)
     }
 
     /// The recording of a pass; without noise on request, as only this tank can have it.

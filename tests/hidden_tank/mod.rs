@@ -18,6 +18,7 @@ pub(crate) mod instruments;
 pub(crate) mod integrate;
 pub(crate) mod least_squares;
 pub(crate) mod motion;
+pub(crate) mod next_run;
 pub(crate) mod plan;
 pub(crate) mod score;
 pub(crate) mod timeline;

@@ -42,6 +42,26 @@ pub(crate) struct Pass {
 }
 
 impl Pass {
+    /// A pass with the luck of its day.
+    pub(crate) fn drawn(
+        index: usize,
+        froude: f64,
+        action: Action,
+        scatter: f64,
+        draw: &mut Draw,
+    ) -> Self {
+        Self {
+            index,
+            speed_m_s: speed_m_s(froude),
+            action,
+            scatter: [(); 2].map(|()| 1.0 + scatter * draw.normal()),
+            chance: [(); 6].map(|()| draw.between(0.0, 1.0)),
+            other_hull: false,
+            speed_shown: 1.0,
+            force_reversed: false,
+        }
+    }
+
     /// The pass as its labels have it.
     pub(crate) fn as_labelled(&self) -> Self {
         Self {
@@ -112,16 +132,7 @@ impl RunSet {
     /// factors on the damping.
     pub(crate) fn passes(self, scatter: f64, draw: &mut Draw) -> Vec<Pass> {
         let script = self.script().into_iter().enumerate();
-        let pass = |(index, (froude, action)): (usize, (f64, Action))| Pass {
-            index,
-            speed_m_s: speed_m_s(froude),
-            action,
-            scatter: [(); 2].map(|()| 1.0 + scatter * draw.normal()),
-            chance: [(); 6].map(|()| draw.between(0.0, 1.0)),
-            other_hull: false,
-            speed_shown: 1.0,
-            force_reversed: false,
-        };
+        let pass = |(index, (froude, action))| Pass::drawn(index, froude, action, scatter, draw);
         script.map(pass).collect()
     }
 }
