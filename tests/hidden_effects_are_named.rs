@@ -1,0 +1,108 @@
+//! What hides in a simulated tank is named, or its class; what does not hide is not.
+//!
+//! A handful of drawn cases; the whole matrix is `cargo test --test hidden_matrix -- --all`.
+
+use std::path::Path;
+
+use super::hidden_tank::campaign::{Asked, Campaign, SCATTER};
+use super::hidden_tank::draw::Draw;
+use super::hidden_tank::effects::INVENTED;
+use super::hidden_tank::fit::{INDISTINGUISHABLE, left_by, misfit};
+use super::hidden_tank::folder::play;
+use super::hidden_tank::next_run::towed;
+use super::hidden_tank::plan::RunSet;
+use super::hidden_tank::score::{Outcome, score};
+use super::hidden_tank::verdict::{Verdict, diagnose};
+
+/// Misfit of the base from which an effect must be found.
+const DETECTABLE: f64 = 50.0;
+
+/// Draws a campaign by name, shows which, and asks the program about it.
+fn diagnosed(set: RunSet, hidden: &[&str], size: f64, seed: u64) -> (Campaign, Verdict) {
+    let hidden: Vec<String> = hidden.iter().map(|id| (*id).to_owned()).collect();
+    let asked = Asked { set, hidden, size, seed, scatter: SCATTER };
+    let campaign = Campaign::draw(&asked);
+    let place = tempfile::tempdir().expect("a place for a campaign");
+    let played = play(&campaign, place.path());
+    let program = Path::new(env!("CARGO_BIN_EXE_rolltank"));
+    let verdict = diagnose(program, &played.folder)
+        .unwrap_or_else(|complaint| panic!("{}: {complaint}", asked.name()));
+    println!("{}: {} {:?}", asked.name(), verdict.word, verdict.causes);
+    (campaign, verdict)
+}
+
+/// The outcome of a hidden effect that its own tank finds detectable.
+fn outcome(set: RunSet, id: &str, size: f64, seed: u64) -> Outcome {
+    let (campaign, verdict) = diagnosed(set, &[id], size, seed);
+    let lambda = misfit(&campaign, &campaign.effects, None);
+    assert!(lambda > DETECTABLE, "{id} leaves {lambda:.1}: no program could find it");
+    // No help for an answer that only happens to fit: class or name.
+    score(&verdict, &campaign.asked.hidden, set, |_, _| false)
+}
+
+/// A seed that nobody chose: the day's number of the story.
+fn drawn_seed(story: &str) -> u64 {
+    Draw::named(story).index(1000) as u64
+}
+
+#[test]
+fn bearing_friction_is_named_from_decays_alone() {
+    let seed = drawn_seed("friction");
+    assert_eq!(outcome(RunSet::Rest, "damping.coulomb", 2.0, seed), Outcome::Named);
+    let (_, verdict) = diagnosed(RunSet::Rest, &["damping.coulomb"], 2.0, seed);
+    let [before, after] = ["before", "after"]
+        .map(|when| verdict.json["gain"]["held_out_rmse_deg"][when].as_f64().expect("a number"));
+    assert!(after < before, "held-out runs are foretold no better: {before} to {after} deg");
+}
+
+#[test]
+fn a_cubic_restoring_is_named_with_its_class_and_the_run_that_parts_it() {
+    let seed = drawn_seed("cubic restoring");
+    let (campaign, verdict) = diagnosed(RunSet::Rest, &["restoring.cubic"], 1.0, seed);
+    let class = ["restoring.cubic", "inertia.amplitude"];
+    assert_eq!(verdict.word, "ambiguous");
+    let [cause] = verdict.causes.as_slice() else { panic!("{:?}", verdict.causes) };
+    let mut told = vec![cause.effect.as_str()];
+    told.extend(cause.equivalent_to.iter().map(String::as_str));
+    assert!(class.iter().all(|id| told.contains(id)), "{told:?}");
+    // The run that it asks for parts the two.
+    let program = Path::new(env!("CARGO_BIN_EXE_rolltank"));
+    assert_eq!(towed(&campaign, &verdict, program), Some(Outcome::Named), "{}", verdict.json);
+}
+
+#[test]
+fn forced_runs_part_what_decays_could_not() {
+    let seed = drawn_seed("amplitude inertia");
+    assert_eq!(outcome(RunSet::Forced, "inertia.amplitude", 1.0, seed), Outcome::Named);
+}
+
+#[test]
+fn a_loose_pin_height_is_named_from_forced_runs() {
+    let seed = drawn_seed("pin height");
+    assert_eq!(outcome(RunSet::Forced, "exciter.pin_height", 1.0, seed), Outcome::Named);
+}
+
+#[test]
+fn a_clean_campaign_is_adequate() {
+    for set in [RunSet::Rest, RunSet::Forced] {
+        let (_, verdict) = diagnosed(set, &[], 1.0, drawn_seed("clean"));
+        assert_eq!((verdict.word.as_str(), verdict.causes.len()), ("adequate", 0));
+    }
+}
+
+#[test]
+fn a_wrong_gain_is_no_finding_because_no_run_of_the_campaign_can_show_it() {
+    let (_, verdict) = diagnosed(RunSet::Rest, &["instrument.roll_gain"], 2.0, drawn_seed("gain"));
+    assert_eq!((verdict.word.as_str(), verdict.causes.len()), ("adequate", 0));
+}
+
+#[test]
+fn what_is_in_no_catalogue_is_given_no_name() {
+    let invented = INVENTED[Draw::named("invented").index(INVENTED.len())].id;
+    let (campaign, verdict) = diagnosed(RunSet::Rest, &[invented], 2.0, drawn_seed(invented));
+    // Unless a catalogued effect does the very same to these runs, which nobody could tell.
+    let worth = score(&verdict, &campaign.asked.hidden, RunSet::Rest, |cause, hidden| {
+        left_by(&campaign, cause, hidden) < INDISTINGUISHABLE
+    });
+    assert!([Outcome::Unexplained, Outcome::InClass].contains(&worth), "{worth:?}");
+}

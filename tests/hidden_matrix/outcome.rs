@@ -1,0 +1,122 @@
+//! One campaign from its draw to its score, as a line of the file of outcomes.
+
+use std::cell::Cell;
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::coverage::covered;
+use crate::hidden_tank::campaign::{Asked, Campaign};
+use crate::hidden_tank::fit::{INDISTINGUISHABLE, left_by, misfit};
+use crate::hidden_tank::folder::play;
+use crate::hidden_tank::next_run::towed;
+use crate::hidden_tank::score::{Outcome, score};
+use crate::hidden_tank::timeline::Timeline;
+use crate::hidden_tank::verdict::{Verdict, diagnose};
+
+/// The outcomes written so far; a line that was cut short is left out, and its cell run again.
+pub(crate) fn read(file: &Path) -> Vec<Value> {
+    let text = std::fs::read_to_string(file).unwrap_or_default();
+    text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
+}
+
+/// What the base cannot take up of each hidden effect alone.
+pub(crate) fn lambdas(campaign: &Campaign) -> Vec<f64> {
+    let alone =
+        campaign.effects.iter().map(|effect| misfit(campaign, std::slice::from_ref(effect), None));
+    alone.map(|lambda| (lambda * 10.0).round() / 10.0).collect()
+}
+
+/// Draws, plays, diagnoses and scores a campaign.
+pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
+    let campaign = Campaign::draw(asked);
+    let lambda = lambdas(&campaign);
+    let place = tempfile::tempdir().expect("a place for a campaign");
+    let played = play(&campaign, place.path());
+    let (answer, seconds) = timed(|| diagnose(program, &played.folder));
+    let mut line = json!({
+        "name": asked.name(), "hidden": asked.hidden, "size": asked.size,
+        "set": asked.set.name(), "seed": asked.seed, "scatter": asked.scatter,
+        "keels": campaign.keels, "lambda": lambda, "seconds": seconds,
+        "noise_rmse_deg": noise_rmse_deg(&campaign),
+    });
+    let verdict = match answer {
+        Ok(verdict) => verdict,
+        Err(complaint) => {
+            line["outcome"] = json!("failed");
+            line["complaint"] = json!(complaint);
+            return line;
+        }
+    };
+    let stood_for = Cell::new(Value::Null);
+    let outcome = score(&verdict, &asked.hidden, asked.set, |cause, hidden| {
+        let left = left_by(&campaign, cause, hidden);
+        stood_for.set(json!({ "cause": cause, "hidden": hidden, "lambda_left": left }));
+        left < INDISTINGUISHABLE
+    });
+    line["verdict"] = json!(verdict.word);
+    line["causes"] =
+        verdict.causes.iter().map(|cause| json!(cause.effect)).collect::<Vec<_>>().into();
+    line["equivalent_to"] =
+        verdict.causes.iter().map(|cause| json!(cause.equivalent_to)).collect::<Vec<_>>().into();
+    line["outcome"] = json!(word(outcome));
+    line["stands_for"] = stood_for.take();
+    line["values"] =
+        campaign.effects.iter().map(|effect| json!(effect.values)).collect::<Vec<_>>().into();
+    line["covered"] = covered(&campaign, &verdict.json["causes"]);
+    line["towed"] = json!(towed(&campaign, &verdict, program).map(word));
+    tell(&mut line, &verdict);
+    line
+}
+
+/// What no model could foretell of the roll: recording less the same without noise, in the runs.
+fn noise_rmse_deg(campaign: &Campaign) -> f64 {
+    let (mut sum, mut n) = (0.0, 0.0);
+    for pass in &campaign.passes {
+        let [noisy, still] = [true, false].map(|noisy| campaign.rows(pass, noisy));
+        let line = Timeline::of(pass);
+        for (i, time_s) in noisy.time_s.iter().enumerate() {
+            if (line.start_s..line.end_s).contains(time_s) {
+                sum += (noisy.roll_deg[i] - still.roll_deg[i]).powi(2);
+                n += 1.0;
+            }
+        }
+    }
+    f64::sqrt(sum / n)
+}
+
+/// What else of the answer the tables need.
+fn tell(line: &mut Value, verdict: &Verdict) {
+    let json = &verdict.json;
+    line["parameters"] = json["causes"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .map(|cause| cause["parameters"].clone())
+        .collect::<Vec<_>>()
+        .into();
+    for part in ["gain", "bias", "next_run", "residual"] {
+        line[part] = json[part].clone();
+    }
+}
+
+/// The result with the seconds that it took.
+#[expect(clippy::disallowed_methods, reason = "the speed is part of what is judged")]
+fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let start = std::time::Instant::now();
+    let result = work();
+    (result, (start.elapsed().as_secs_f64() * 1000.0).round() / 1000.0)
+}
+
+/// The word of an outcome in file and tables.
+fn word(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Named => "named",
+        Outcome::InClass => "in class",
+        Outcome::Partly => "partly",
+        Outcome::WithMore => "with more",
+        Outcome::WrongName => "wrong name",
+        Outcome::Adequate => "adequate",
+        Outcome::Unexplained => "unexplained",
+    }
+}
