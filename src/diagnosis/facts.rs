@@ -1,4 +1,4 @@
-//! What a record shows without any model: its noise, its steps, lines in it; flat crests are `clipping`.
+//! What a record shows without any model: its noise, its steps, lines in it.
 
 use super::clipping;
 use crate::model::{Facts, Line};

@@ -178,6 +178,7 @@ fn winner(
     }
     let equivalent_to = plausible[1..]
         .iter()
+        .filter(|one| !contains(one.id, best.id))
         .filter(|one| is_same(survey, current, &best.settled, &one.settled))
         .map(|one| one.id)
         .collect();
@@ -193,6 +194,19 @@ fn is_same(survey: &Survey, before: &Settled, favourite: &Settled, rival: &Settl
     let (most, as_well) = (explained(survey, before, favourite), explained(survey, before, rival));
     let explains_it = gained > ENTERS && most - as_well < SAME.max(SAME_SHARE * most);
     (2.0 * behind < SAME && gained > 0.5 * ENTERS) || explains_it
+}
+
+/// Whether a rival holds the favourite as a part, as a drift holds the zero that it starts from:
+/// it explains as much and is no other cause.
+fn contains(rival: &str, favourite: &str) -> bool {
+    let (Some(rival), Some(favourite)) = (effects::effect(rival), effects::effect(favourite))
+    else {
+        return false;
+    };
+    rival.strengths.len() > favourite.strengths.len()
+        && favourite.strengths.iter().all(|part| {
+            rival.strengths.iter().any(|p| p.symbol == part.symbol && p.unit == part.unit)
+        })
 }
 
 /// Whether the form of an effect stands for many that differ a little: waves, memories, hands.
@@ -307,6 +321,7 @@ fn check_backward(
         entered[e].equivalent_to = tried
             .iter()
             .filter(|one| is_plausible(survey, &one.settled))
+            .filter(|one| !contains(one.id, taken.effect.id))
             .filter(|one| is_same(survey, &without, &current, &one.settled))
             .map(|one| one.id)
             .collect();

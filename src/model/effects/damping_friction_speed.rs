@@ -1,4 +1,4 @@
-//! Bearing friction that the resistance of the towed model presses up, with the square of the speed.
+//! Bearing friction that the resistance of the towed model presses up, with the speed squared.
 
 use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, each, under_way};
 
