@@ -1,20 +1,15 @@
 //! The model grows by one effect at a time until nothing more is to be named.
 
+use super::alike::{SAME, SAME_SHARE, contains, explained, is_approximate, is_same};
 use super::leftover::{self, Leftover};
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score};
 use super::settle::{Settled, settle};
-use super::solve::{Layout, scatters, solve};
+use super::solve::Layout;
 use super::survey::{Extension, Fit, Survey};
-use crate::model::effects;
-use crate::model::{Acts, Layer};
 
 /// Least logarithm of a Bayes factor at which an effect may enter: one in a thousand by chance.
 pub(super) const ENTERS: f64 = 7.0;
-/// Difference of misfits below which two effects cannot be told apart.
-const SAME: f64 = 12.0;
-/// The same as a share of what the effect explains.
-const SAME_SHARE: f64 = 0.01;
 /// Share of what is left for sure that an effect must take away to enter.
 const ENOUGH: f64 = 0.2;
 /// Most effects of a model.
@@ -186,36 +181,6 @@ fn winner(
     plausible.into_iter().next().map(|best| (best.settled, entered))
 }
 
-/// Whether these runs cannot tell a rival from the favourite: it is as probable, or explains all
-/// but a hundredth of the same.
-fn is_same(survey: &Survey, before: &Settled, favourite: &Settled, rival: &Settled) -> bool {
-    let behind = favourite.log_evidence - rival.log_evidence;
-    let gained = rival.log_evidence - before.log_evidence;
-    let (most, as_well) = (explained(survey, before, favourite), explained(survey, before, rival));
-    let explains_it = gained > ENTERS && most - as_well < SAME.max(SAME_SHARE * most);
-    (2.0 * behind < SAME && gained > 0.5 * ENTERS) || explains_it
-}
-
-/// Whether a rival holds the favourite as a part, as a drift holds the zero that it starts from:
-/// it explains as much and is no other cause.
-fn contains(rival: &str, favourite: &str) -> bool {
-    let (Some(rival), Some(favourite)) = (effects::effect(rival), effects::effect(favourite))
-    else {
-        return false;
-    };
-    rival.strengths.len() > favourite.strengths.len()
-        && favourite.strengths.iter().all(|part| {
-            rival.strengths.iter().any(|p| p.symbol == part.symbol && p.unit == part.unit)
-        })
-}
-
-/// Whether the form of an effect stands for many that differ a little: waves, memories, hands.
-fn is_approximate(id: &str) -> bool {
-    effects::effect(id).is_some_and(|effect| {
-        effect.layer == Layer::Tank || matches!(effect.acts, Acts::Lagging(_))
-    })
-}
-
 /// A model with one effect fewer, where another reading of a cause makes it needless.
 fn simpler(
     survey: &Survey,
@@ -256,15 +221,6 @@ fn simpler(
         }
     }
     None
-}
-
-/// The fall of the misfit from one model to the next when no run may leave its law: what scatter
-/// could hide is still explained.
-fn explained(survey: &Survey, before: &Settled, after: &Settled) -> f64 {
-    let tight = scatters(survey)[0];
-    let least =
-        |settled: &Settled| solve(survey, &settled.fit, &settled.summaries, tight).least_misfit;
-    least(before) - least(after)
 }
 
 /// Whether an effect takes its part of what is left for sure: what removes a little of a large

@@ -5,6 +5,7 @@
 //! their evidence, so that the model grows by one effect at a time (`growth`) until nothing more
 //! is to be named.
 
+mod alike;
 mod clipping;
 mod elimination;
 mod facts;

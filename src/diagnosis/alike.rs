@@ -1,0 +1,57 @@
+//! Which effects these runs cannot tell apart.
+
+use super::growth::ENTERS;
+use super::settle::Settled;
+use super::solve::{scatters, solve};
+use super::survey::Survey;
+use crate::model::effects;
+use crate::model::{Acts, Layer};
+
+/// Difference of misfits below which two effects cannot be told apart.
+pub(super) const SAME: f64 = 12.0;
+/// The same as a share of what the effect explains.
+pub(super) const SAME_SHARE: f64 = 0.01;
+
+/// Whether these runs cannot tell a rival from the favourite: it is as probable, or explains all
+/// but a hundredth of the same.
+pub(super) fn is_same(
+    survey: &Survey,
+    before: &Settled,
+    favourite: &Settled,
+    rival: &Settled,
+) -> bool {
+    let behind = favourite.log_evidence - rival.log_evidence;
+    let gained = rival.log_evidence - before.log_evidence;
+    let (most, as_well) = (explained(survey, before, favourite), explained(survey, before, rival));
+    let explains_it = gained > ENTERS && most - as_well < SAME.max(SAME_SHARE * most);
+    (2.0 * behind < SAME && gained > 0.5 * ENTERS) || explains_it
+}
+
+/// Whether a rival holds the favourite as a part, as a drift holds the zero that it starts from:
+/// it explains as much and is no other cause.
+pub(super) fn contains(rival: &str, favourite: &str) -> bool {
+    let (Some(rival), Some(favourite)) = (effects::effect(rival), effects::effect(favourite))
+    else {
+        return false;
+    };
+    rival.strengths.len() > favourite.strengths.len()
+        && favourite.strengths.iter().all(|part| {
+            rival.strengths.iter().any(|p| p.symbol == part.symbol && p.unit == part.unit)
+        })
+}
+
+/// Whether the form of an effect stands for many that differ a little: waves, memories, hands.
+pub(super) fn is_approximate(id: &str) -> bool {
+    effects::effect(id).is_some_and(|effect| {
+        effect.layer == Layer::Tank || matches!(effect.acts, Acts::Lagging(_))
+    })
+}
+
+/// The fall of the misfit from one model to the next when no run may leave its law: what scatter
+/// could hide is still explained.
+pub(super) fn explained(survey: &Survey, before: &Settled, after: &Settled) -> f64 {
+    let tight = scatters(survey)[0];
+    let least =
+        |settled: &Settled| solve(survey, &settled.fit, &settled.summaries, tight).least_misfit;
+    least(before) - least(after)
+}
