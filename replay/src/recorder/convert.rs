@@ -11,7 +11,7 @@ use mcap::{Compression, McapError, WriteOptions, Writer, parse_record};
 use super::closed::Stop;
 use super::digest::{Contents, Digest};
 use super::disk::Disk;
-use super::open_run::OpenRun;
+use super::open_run::OpenRuns;
 use super::part_bytes::LIBRARY;
 use super::part_reader::PartReader;
 use super::survey::Survey;
@@ -54,8 +54,7 @@ pub(crate) fn convert(
     let metadata = Metadata { name: METADATA.to_owned(), metadata: entries(survey, stop) };
     copier.writer.write_metadata(&metadata).map_err(mcap_failed)?;
     let zero_ns = survey.zero_log_time_ns();
-    let open_runs = survey.open_runs.iter().map(|start| OpenRun::new(start, zero_ns));
-    let mut open_runs: Vec<OpenRun> = open_runs.collect();
+    let mut open_runs = OpenRuns::new(&survey.open_runs, zero_ns);
     let mut reader = PartReader::new(part, file)?;
     while let Some((opcode, body)) = reader.next()? {
         match parse_record(opcode, body) {
@@ -68,9 +67,7 @@ pub(crate) fn convert(
             Ok(McapRecord::Message { header, data }) => {
                 copier.message(&header, &data).map_err(mcap_failed)?;
                 if let Some(copied) = copier.channels.get(&header.channel_id) {
-                    for run in &mut open_runs {
-                        run.count(&copied.channel.topic, header.log_time, &data);
-                    }
+                    open_runs.count(&copied.channel.topic, header.log_time, &data);
                 }
             }
             Ok(_) => {}
@@ -79,8 +76,8 @@ pub(crate) fn convert(
     }
     let end_ns = i128::from(survey.last_log_time_ns) - i128::from(zero_ns);
     let end_s = end_ns as f64 / 1e9;
-    for run in open_runs {
-        let stop = Record::RunStop(run.stop(end_s, &stop.exit));
+    for stop in open_runs.stops(end_s, &stop.exit) {
+        let stop = Record::RunStop(stop);
         copier.stop_run(&stop, survey.last_log_time_ns).map_err(mcap_failed)?;
     }
     copier.writer.finish().map_err(mcap_failed)?;
