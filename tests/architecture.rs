@@ -54,7 +54,7 @@ const OWNERS: [(&str, &[&str]); 20] = [
     ("tokio", &[]),
     ("serialport", &["devices/src/port"]),
     ("thread_priority", &["devices/src/realtime"]),
-    ("rustix", &["devices/src/emulator"]),
+    ("rustix", &["devices/src/emulator", "replay/src/recorder/disk"]),
     ("crc", &["devices/src/driver"]),
     ("cobs", &["devices/src/driver"]),
 ];

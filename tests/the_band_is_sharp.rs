@@ -15,7 +15,8 @@ const RATE_HZ: f64 = 100.0;
 const NOISE_RAD: f64 = 8.7e-4;
 const AMPLITUDE_RAD: f64 = 5.0 / 180.0 * std::f64::consts::PI;
 
-/// Natural frequency [rad/s], `b1` [1/s], `b3` [s], initial roll [rad] and rate [rad/s], zero [rad].
+/// Natural frequency [rad/s], `b1` [1/s], `b3` [s], initial roll [rad], initial rate [rad/s], zero
+/// [rad].
 type Unknowns = [f64; 6];
 
 /// Decays of Table 2 at Fr 0 and 0.2: bare hull, then bilge keels; 15 deg at the start.

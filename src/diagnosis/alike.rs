@@ -11,19 +11,24 @@ use crate::model::{Acts, Layer};
 pub(super) const SAME: f64 = 12.0;
 /// The same as a share of what the effect explains.
 pub(super) const SAME_SHARE: f64 = 0.01;
+/// The share below which two effects are alike where as much again is left unexplained.
+const ALIKE_SHARE: f64 = 0.1;
 
 /// Whether these runs cannot tell a rival from the favourite: it is as probable, or explains all
-/// but a hundredth of the same.
+/// but a hundredth of the same, or falls a little behind, by less than what the favourite itself
+/// leaves: `left`, in units of the noise's variance.
 pub(super) fn is_same(
     survey: &Survey,
     before: &Settled,
     favourite: &Settled,
     rival: &Settled,
+    left: f64,
 ) -> bool {
     let behind = favourite.log_evidence - rival.log_evidence;
     let gained = rival.log_evidence - before.log_evidence;
     let (most, as_well) = (explained(survey, before, favourite), explained(survey, before, rival));
-    let explains_it = gained > ENTERS && most - as_well < SAME.max(SAME_SHARE * most);
+    let room = SAME.max(SAME_SHARE * most).max(left.min(ALIKE_SHARE * most));
+    let explains_it = gained > ENTERS && most - as_well < room;
     (2.0 * behind < SAME && gained > 0.5 * ENTERS) || explains_it
 }
 

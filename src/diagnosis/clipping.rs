@@ -18,7 +18,8 @@ pub(super) fn clip(roll: &Series, rolling_rad_s: f64) -> Option<Clip> {
     let tail = &values[values.len() - (values.len() / 5).max(1)..];
     let middle = tail.iter().sum::<f64>() / tail.len() as f64;
     let top = values.iter().map(|v| (v - middle).abs()).fold(0.0, f64::max) - 2.0 * noise_rad;
-    let mut levels: Vec<(f64, f64)> = Vec::new();
+    // Of each side, for the middle is not known well enough to compare them.
+    let mut levels: [Vec<(f64, f64)>; 2] = [Vec::new(), Vec::new()];
     let mut log_bayes_factor = 0.0;
     let mut start = 0;
     while start < values.len() {
@@ -37,18 +38,27 @@ pub(super) fn clip(roll: &Series, rolling_rad_s: f64) -> Option<Clip> {
                 let off = |expected: f64| ((curvature - expected) / sd).powi(2);
                 let log = 0.5 * (off(round).min(400.0) - off(0.0).min(400.0)) - 2.0;
                 if (curvature / round) < FLAT && log > 0.0 {
-                    levels.push((level, noise_rad / (inner.len() as f64).sqrt()));
+                    levels[usize::from(sign < 0.0)]
+                        .push((level, noise_rad / (inner.len() as f64).sqrt()));
                     log_bayes_factor += log;
                 }
             }
         }
         start += length.max(1);
     }
-    let n = levels.len() as f64;
-    let level_rad = levels.iter().map(|l| l.0).sum::<f64>() / n;
-    let sd_rad = levels.iter().map(|l| l.1 * l.1).sum::<f64>().sqrt() / n;
-    let agree = levels.iter().all(|l| (l.0 - level_rad).abs() < 4.0 * l.1 + 2e-3 * level_rad);
-    let sure = !levels.is_empty() && agree && log_bayes_factor > 10.0;
+    let cut: Vec<&Vec<(f64, f64)>> = levels.iter().filter(|side| !side.is_empty()).collect();
+    let n = cut.len() as f64;
+    let mean = |side: &[(f64, f64)]| side.iter().map(|l| l.0).sum::<f64>() / side.len() as f64;
+    let level_rad = cut.iter().map(|side| mean(side)).sum::<f64>() / n;
+    let variance = |side: &[(f64, f64)]| {
+        side.iter().map(|l| l.1 * l.1).sum::<f64>() / (side.len() as f64).powi(2)
+    };
+    let sd_rad = cut.iter().map(|side| variance(side)).sum::<f64>().sqrt() / n;
+    let agree = cut.iter().all(|side| {
+        let level_rad = mean(side);
+        side.iter().all(|l| (l.0 - level_rad).abs() < 4.0 * l.1 + 2e-3 * level_rad)
+    });
+    let sure = !cut.is_empty() && agree && log_bayes_factor > 10.0;
     sure.then_some(Clip { level_rad, sd_rad, log_bayes_factor })
 }
 

@@ -171,10 +171,11 @@ fn winner(
     if crumbs.map(|entered| SAME_SHARE * entered.explained).any(|crumb| explained < crumb) {
         return None;
     }
+    let left = excess(&leftovers(survey, &best.settled.fit));
     let equivalent_to = plausible[1..]
         .iter()
         .filter(|one| !contains(one.id, best.id))
-        .filter(|one| is_same(survey, current, &best.settled, &one.settled))
+        .filter(|one| is_same(survey, current, &best.settled, &one.settled, left))
         .map(|one| one.id)
         .collect();
     let entered = Entered { id: best.id, log_bayes_factor, explained, equivalent_to };
@@ -230,8 +231,12 @@ fn explains_enough(survey: &Survey, before: &Fit, after: &Fit) -> bool {
     if !before.iter().any(Leftover::is_sure) {
         return true;
     }
-    let excess = |all: &[Leftover]| all.iter().map(|l| l.excess).sum::<f64>();
     excess(&before) - excess(&after) > ENOUGH * excess(&before)
+}
+
+/// What is left beyond the noise, in units of its variance.
+fn excess(all: &[Leftover]) -> f64 {
+    all.iter().map(|l| l.excess).sum()
 }
 
 /// What a fit leaves of every channel of every run.
@@ -272,13 +277,14 @@ fn check_backward(
             .take(4)
             .collect();
         let tried = fit_all(survey, &without, &rivals, noise);
+        let left = excess(&leftovers(survey, &current.fit));
         entered[e].log_bayes_factor = missed;
         entered[e].explained = explained;
         entered[e].equivalent_to = tried
             .iter()
             .filter(|one| is_plausible(survey, &one.settled))
             .filter(|one| !contains(one.id, taken.effect.id))
-            .filter(|one| is_same(survey, &without, &current, &one.settled))
+            .filter(|one| is_same(survey, &without, &current, &one.settled, left))
             .map(|one| one.id)
             .collect();
         let better = tried

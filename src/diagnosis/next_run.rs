@@ -1,7 +1,7 @@
 //! Which run would say most: by the expected Bayes factor where causes are undecided, else by what
 //! the law of damping would gain.
 
-use super::growth::Grown;
+use super::growth::{Grown, leftovers};
 use super::observation::Observation;
 use super::run_fit::{ChannelNoise, RunState, Summary, predict, summarise};
 use super::score::score;
@@ -31,6 +31,16 @@ pub struct NextRun {
     pub why: String,
 }
 
+/// Pairs that are one in a roll near its natural frequency `w`, whatever the amplitude, because
+/// `phi^2 phi'' = -w^2 phi^3` and `K/I = w^2` there: what parts them in a decay is what neither
+/// explains.
+const ONE_IN_DECAYS: [[&str; 2]; 2] =
+    [["restoring.cubic", "inertia.amplitude"], ["restoring.speed", "inertia.speed"]];
+
+fn is_one_in_decays(a: &str, b: &str) -> bool {
+    ONE_IN_DECAYS.iter().any(|pair| *pair == [a, b] || *pair == [b, a])
+}
+
 /// A run that could be made.
 #[derive(Debug, Clone, Copy)]
 struct Plan {
@@ -49,7 +59,14 @@ const SAMPLE_S: f64 = 0.02;
 /// Times that a rival is linearised anew on a run that it has not seen.
 const RELINEARISED: usize = 4;
 
-fn plans(tank: &Tank, run: &Observation) -> Vec<(Plan, f64)> {
+/// Amplitude that may be asked for, over the largest that was rolled: beyond it the law is not
+/// known, nor whether the deck stays dry.
+const REACH: f64 = 1.7;
+
+fn plans(tank: &Tank, survey: &Survey) -> Vec<(Plan, f64)> {
+    let run = &survey.runs[0];
+    let rolled_rad = survey.runs.iter().map(|run| run.at.amplitude_rad).fold(0.0, f64::max);
+    let largest_deg = REACH * rolled_rad.to_degrees();
     let unit_m_s = run.at.speed_m_s / run.at.froude.max(1e-9);
     let mut plans = Vec::new();
     for froude in [0.0, 0.05, 0.1, 0.2, 0.3, 0.4] {
@@ -77,6 +94,7 @@ fn plans(tank: &Tank, run: &Observation) -> Vec<(Plan, f64)> {
             }
         }
     }
+    plans.retain(|(plan, _)| plan.amplitude_deg.abs() <= largest_deg.max(4.0));
     plans
 }
 
@@ -87,6 +105,7 @@ impl Plan {
         survey: &Survey,
         fit: &Fit,
         span_s: f64,
+        left: [f64; 2],
     ) -> (Observation, RunState, ChannelNoise) {
         let like = &survey.runs[0];
         let law = &fit.laws[survey.condition_of[0]];
@@ -124,7 +143,10 @@ impl Plan {
         let stiffness = at.inertia_kg_m2 * w * w;
         // A load cell resolves about a thousandth of the model's moment at half a radian.
         let moment_sd = known.map_or(6e-4 * stiffness, |run| run.rough_noise[1]);
-        let noise = ChannelNoise { sd: [like.rough_noise[0], moment_sd], correlation: [0.0; 2] };
+        let noise = ChannelNoise {
+            sd: [like.rough_noise[0].max(left[0]), moment_sd.max(left[1])],
+            correlation: [0.0; 2],
+        };
         (run, state, noise)
     }
 }
@@ -152,9 +174,27 @@ fn grown_survey(survey: &Survey, run: Observation) -> Survey {
     Survey { runs, conditions: survey.conditions.clone(), condition_of }
 }
 
+/// Root mean square of what a model leaves of roll [rad] and moment [N m] in a middling run: to
+/// the next run that is noise too.
+fn left_in_channels(survey: &Survey, fit: &Fit) -> [f64; 2] {
+    let all = leftovers(survey, fit);
+    ["roll", "moment"].map(|channel| {
+        let of_channel = all.iter().filter(|left| left.channel == channel);
+        let mut rms: Vec<f64> = of_channel.map(|left| left.rms).collect();
+        rms.sort_by(f64::total_cmp);
+        rms.get(rms.len() / 2).copied().unwrap_or(0.0)
+    })
+}
+
 /// Half of the misfit that a rival would keep on a run that the favourite made.
-fn expected(survey: &Survey, favourite: &Fit, rival: &Settled, plan: &Plan, span_s: f64) -> f64 {
-    let (mut run, state, noise) = plan.observed(survey, favourite, span_s);
+fn expected(
+    survey: &Survey,
+    favourite: &Fit,
+    rival: &Settled,
+    (plan, span_s): &(Plan, f64),
+    left: [f64; 2],
+) -> f64 {
+    let (mut run, state, noise) = plan.observed(survey, favourite, *span_s, left);
     let truth = with_run(survey, favourite, &run, state.clone());
     let last = survey.runs.len();
     let readings = predict(&run, &state, &truth.terms(last));
@@ -242,16 +282,21 @@ fn parting(
             settle(survey, fit, &grown.noise)
         })
         .collect();
-    let plans = plans(tank, &survey.runs[0]);
+    let plans = plans(tank, survey);
     let mut best: Option<(f64, Plan)> = None;
-    for (plan, span_s) in plans {
+    let left = left_in_channels(survey, &grown.last.fit);
+    let only_forced = rivals.iter().any(|rival| is_one_in_decays(favourite, rival));
+    for planned in plans {
+        if only_forced && planned.0.kind == RunKind::Decay {
+            continue;
+        }
         // The rival that is hardest to part decides.
         let least = settled
             .iter()
-            .map(|rival| expected(survey, &grown.last.fit, rival, &plan, span_s))
+            .map(|rival| expected(survey, &grown.last.fit, rival, &planned, left))
             .fold(f64::INFINITY, f64::min);
         if least.is_finite() && best.is_none_or(|(most, _)| least > 1.05 * most) {
-            best = Some((least, plan));
+            best = Some((least, planned.0));
         }
     }
     let (log, plan) = best?;
@@ -309,11 +354,12 @@ fn informing(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<NextRun> {
     };
     let now = volume(&solve(survey, &last.fit, &last.summaries, scatter).covariance);
     let mut best: Option<(f64, Plan)> = None;
-    for (plan, span_s) in plans(tank, &survey.runs[0]) {
+    let left = left_in_channels(survey, &last.fit);
+    for (plan, span_s) in plans(tank, survey) {
         if plan.kind == RunKind::Forced || plan.amplitude_deg < 0.0 {
             continue;
         }
-        let (mut run, state, noise) = plan.observed(survey, &last.fit, span_s);
+        let (mut run, state, noise) = plan.observed(survey, &last.fit, span_s, left);
         let fit = with_run(survey, &last.fit, &run, state.clone());
         let terms = fit.terms(survey.runs.len());
         let readings = predict(&run, &state, &terms);

@@ -70,7 +70,7 @@ pub struct Quadrature {
 
 impl Quadrature {
     /// What a band needs: its ends are right to a thousandth of their distance.
-    pub const BAND: Self = Self { step_sd: 1.4, negligible: 1e-3 };
+    pub const BAND: Self = Self { step_sd: 1.5, negligible: 1e-2 };
     /// As many digits as the arithmetic carries.
     pub const EXACT: Self = Self { step_sd: 0.4, negligible: 1e-15 };
 }
