@@ -52,7 +52,10 @@ fn bearing_friction_is_named_from_decays_alone() {
     let told = outcome(RunSet::Rest, "damping.coulomb", 2.0, seed);
     assert!(matches!(told, Outcome::Named | Outcome::InClass), "{told:?}");
     let (_, verdict) = diagnosed(RunSet::Rest, &["damping.coulomb"], 2.0, seed);
-    assert_eq!(verdict.json["causes"][0]["effect"], "damping.coulomb");
+    let cause = &verdict.json["causes"][0];
+    assert_eq!(cause["effect"], "damping.coulomb");
+    let rivals = cause["equivalent_to"].as_array().expect("a list");
+    assert!(rivals.iter().all(|rival| rival == "tank.residual_wave"), "{rivals:?}");
     let [before, after] = ["before", "after"]
         .map(|when| verdict.json["gain"]["held_out_rmse_deg"][when].as_f64().expect("a number"));
     assert!(after < before, "held-out runs are foretold no better: {before} to {after} deg");

@@ -1,6 +1,8 @@
 //! The posterior in linear time against dense algebra, on the paper's own model.
 
+use rolltank::bench::speed::paper_problem;
 use rolltank::inverse::paper::exact::exact;
+use rolltank::inverse::paper::{Hyperpriors, PriorPower};
 use rolltank::inverse::state_space::posterior::Quadrature;
 
 use crate::dense_posterior::dense_posterior;
@@ -51,4 +53,18 @@ fn three_hundred_samples_have_the_dense_posterior_to_eight_digits() {
     let (mean, sd) = differences(&free, 5);
     println!("n = 300, scale free: largest difference of mean {mean:.1e} sd, of sd {sd:.1e}");
     assert!(mean < ROUNDING && sd < ROUNDING, "mean {mean}, sd {sd}");
+}
+
+#[test]
+fn the_nodes_that_a_band_takes_move_it_by_a_thousandth_of_a_deviation() {
+    let (g, convolution) = paper_problem(500).expect("the problem is well posed");
+    let at =
+        |quadrature| exact(&g, &convolution, &Hyperpriors::PAPER, PriorPower::Printed, quadrature);
+    let (band, all) = (at(Quadrature::BAND), at(Quadrature::EXACT));
+    for (few, many) in [(&band.mean, &all.mean), (&band.sd, &all.sd)] {
+        let off = |((few, many), sd): ((&f64, &f64), &f64)| ((few - many) / sd).abs();
+        let worst = few.iter().zip(many).zip(&all.sd).map(off).fold(0.0, f64::max);
+        println!("largest difference {worst:.1e} sd");
+        assert!(worst < 1.1e-3, "{worst}");
+    }
 }

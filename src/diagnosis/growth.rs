@@ -235,7 +235,7 @@ fn explains_enough(survey: &Survey, before: &Fit, after: &Fit) -> bool {
 }
 
 /// What is left beyond the noise, in units of its variance.
-fn excess(all: &[Leftover]) -> f64 {
+pub(super) fn excess(all: &[Leftover]) -> f64 {
     all.iter().map(|l| l.excess).sum()
 }
 

@@ -1,7 +1,7 @@
 //! What is told of a campaign: verdict, causes in order of entry, gain, bias, what is left.
 
 use super::gain::{self, HeldOut};
-use super::growth::{Grown, grow, leftovers};
+use super::growth::{Grown, excess, grow, leftovers};
 use super::leftover::Leftover;
 use super::next_run::{NextRun, next_run};
 use super::observation::Observation;
@@ -118,7 +118,6 @@ pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
     let left_after = leftovers(&survey, &grown.last.fit);
     let mut causes = causes(&survey, &grown);
     let mut suspects = Vec::new();
-    let excess = |all: &[Leftover]| all.iter().map(|l| l.excess).sum::<f64>();
     let is_left = left_after.iter().any(Leftover::is_sure);
     let untold = is_left && excess(&left_after) > MOST_LEFT * excess(&left_before);
     if untold {
