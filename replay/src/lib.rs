@@ -11,6 +11,7 @@ mod csv_stream;
 mod documents;
 mod ending;
 mod error;
+mod flat_json;
 mod folder;
 mod gaps;
 mod hint;

@@ -1,7 +1,6 @@
 //! One topic of an MCAP file as a stream of samples in time order.
 
-use std::cmp::Ordering;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 
 use devices::{Quantity, Sample};
@@ -47,7 +46,8 @@ pub(crate) struct McapStream {
     schemas: BTreeMap<u16, (String, Vec<u8>)>,
     /// The topic's channels, of which it may have several.
     channels: BTreeMap<u16, Format>,
-    window: BinaryHeap<Waiting>,
+    /// Messages in order of time, equals in order of the file.
+    window: VecDeque<Waiting>,
     stamps: Stamps<f64>,
     messages: u64,
     ended: bool,
@@ -59,32 +59,12 @@ pub(crate) struct McapStream {
     null: Tally,
 }
 
-/// A message in the window; the earliest is the greatest, the first of equals before the others.
+/// A message in the window.
 struct Waiting {
     time_s: f64,
     message: u64,
     value: f64,
 }
-
-impl Ord for Waiting {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.time_s.total_cmp(&self.time_s).then(other.message.cmp(&self.message))
-    }
-}
-
-impl PartialOrd for Waiting {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Waiting {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Waiting {}
 
 impl McapStream {
     /// Opens the file for one of its topics.
@@ -95,7 +75,7 @@ impl McapStream {
             place,
             schemas: BTreeMap::new(),
             channels: BTreeMap::new(),
-            window: BinaryHeap::new(),
+            window: VecDeque::new(),
             stamps: Stamps::new(),
             messages: 0,
             ended: false,
@@ -218,7 +198,10 @@ impl McapStream {
             self.disordered.add(|| self.messages);
         }
         self.latest_s = time_s.max(self.latest_s);
-        self.window.push(Waiting { time_s, message: self.messages, value });
+        // Nearly all belong at the end.
+        let later = self.window.iter().rev().take_while(|w| w.time_s.total_cmp(&time_s).is_gt());
+        let place = self.window.len() - later.count();
+        self.window.insert(place, Waiting { time_s, message: self.messages, value });
     }
 
     fn release(&mut self, waiting: &Waiting) -> Result<(), ReplayError> {
@@ -255,7 +238,7 @@ impl Stream for McapStream {
                     (self.ended, self.failure) = (true, Some(error));
                 }
             }
-            let Some(waiting) = self.window.pop() else {
+            let Some(waiting) = self.window.pop_front() else {
                 self.stamps.finish();
                 return self.failure.take().map_or(Ok(None), Err);
             };

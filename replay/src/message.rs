@@ -1,5 +1,6 @@
 //! A message of a foreign recording, whatever its encoding, as a place to find numbers in.
 
+use crate::flat_json;
 use crate::json_field;
 use crate::protobuf_field::{self, Step};
 use crate::protobuf_schema::{message_type, steps};
@@ -59,9 +60,11 @@ impl Format {
     /// What is wrong with the message, in words.
     pub(crate) fn number_at(&self, message: &[u8], path: &str) -> Result<Found, String> {
         match self {
-            Self::Json => {
-                json_field::number_at(message, path).map_err(|error| format!("not JSON ({error})"))
-            }
+            Self::Json => match flat_json::number_at(message, path) {
+                Some(number) => Ok(Found::Number(number)),
+                None => json_field::number_at(message, path)
+                    .map_err(|error| format!("not JSON ({error})")),
+            },
             Self::Protobuf(ways) => match ways.iter().find(|(way, _)| way == path) {
                 Some((_, Ok(steps))) => protobuf_field::number_at(message, steps)
                     .map_err(|_| "not the protobuf its schema describes".to_owned()),

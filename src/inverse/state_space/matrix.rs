@@ -107,42 +107,46 @@ pub fn triangular_root<const N: usize>(columns: &mut [[f64; N]]) -> Matrix<N> {
     root
 }
 
-/// The lower triangular `L` with `L L' = A A' + B B'`, by Householder reflections of `[A B]`.
+/// The lower triangular `L` with `L L' = A A' + B B'`, by Householder reflections of `[A B]`; `B`
+/// is lower triangular.
 ///
 /// What [`triangular_root`] does, for the one size that every step of the filter needs.
 pub fn joined_root<const N: usize>(mut a: Matrix<N>, mut b: Matrix<N>) -> Matrix<N> {
     let mut root = [[0.0; N]; N];
     for pivot in 0..N {
         let (lead, tail) = (a[pivot], b[pivot]);
-        let mut square = 0.0;
-        for value in lead[pivot..].iter().chain(&tail) {
-            square += value * value;
-        }
+        // A step waits for these sums, so the two halves of each are summed side by side. No
+        // reflection fills what is right of the diagonal of `B`.
+        let sum = |a: &[f64; N], b: &[f64; N]| {
+            let (mut of_a, mut of_b) = (0.0, 0.0);
+            for j in pivot..N {
+                of_a += a[j] * lead[j];
+            }
+            for j in 0..=pivot {
+                of_b += b[j] * tail[j];
+            }
+            of_a + of_b
+        };
+        let square = sum(&lead, &tail);
         if square == 0.0 {
             continue;
         }
         let norm = square.sqrt();
         let signed = if lead[pivot] > 0.0 { -norm } else { norm };
         // The reflector is v = row - signed e_1, and v'v / 2 = norm (norm + |head|).
-        let per_half_square = (norm * (norm + lead[pivot].abs())).recip();
+        let per_half_square = (square + norm * lead[pivot].abs()).recip();
         // The sign is free; a positive diagonal makes the root unique.
         let sign = signed.signum();
         root[pivot][pivot] = norm;
         for row in pivot + 1..N {
-            let mut along = -signed * a[row][pivot];
-            for (value, lead) in a[row][pivot..].iter().zip(&lead[pivot..]) {
-                along += value * lead;
-            }
-            for (value, tail) in b[row].iter().zip(&tail) {
-                along += value * tail;
-            }
+            let along = sum(&a[row], &b[row]) - signed * a[row][pivot];
             let factor = along * per_half_square;
             root[row][pivot] = sign * (a[row][pivot] - factor * (lead[pivot] - signed));
-            for (value, lead) in a[row].iter_mut().zip(&lead).skip(pivot + 1) {
-                *value -= factor * lead;
+            for j in pivot + 1..N {
+                a[row][j] -= factor * lead[j];
             }
-            for (value, tail) in b[row].iter_mut().zip(&tail) {
-                *value -= factor * tail;
+            for j in 0..=pivot {
+                b[row][j] -= factor * tail[j];
             }
         }
     }
