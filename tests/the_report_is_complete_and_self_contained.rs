@@ -152,7 +152,7 @@ fn every_number_of_the_run_table_is_the_number_of_the_json_rounded() {
     let json: Value =
         serde_json::from_str(&report::identification_json(&campaign, &results)).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let path = report::write_campaign(&campaign, &results, folder.path()).unwrap();
+    let path = report::write_campaign(&campaign, &results, None, folder.path()).unwrap();
     let page = fs::read_to_string(path).unwrap();
     let table = page.split("id=\"runs-table\"").nth(1).unwrap().split("</table>").next().unwrap();
     let rows: Vec<_> = table.split("<tbody>").nth(1).unwrap().split("<tr>").skip(1).collect();
@@ -277,7 +277,7 @@ fn a_campaign_without_runs_says_so_with_its_reasons() {
     let rejected = synthetic_results::results().rejected;
     let results = Results { rejected, ..Results::default() };
     let folder = tempfile::tempdir().unwrap();
-    let path = report::write_campaign(&campaign, &results, folder.path()).unwrap();
+    let path = report::write_campaign(&campaign, &results, None, folder.path()).unwrap();
     let page = fs::read_to_string(path).unwrap();
     assert!(page.contains("No run was identified"));
     assert!(page.contains(&results.rejected[0].reason));
@@ -290,7 +290,7 @@ fn a_recording_that_gave_no_run_is_drawn_with_what_was_rejected() {
     let barren = results.overviews[2].recording.clone();
     results.runs.retain(|run| run.recording != barren);
     let folder = tempfile::tempdir().unwrap();
-    let path = report::write_campaign(&campaign, &results, folder.path()).unwrap();
+    let path = report::write_campaign(&campaign, &results, None, folder.path()).unwrap();
     let page = fs::read_to_string(path).unwrap();
     let drawn = page.split("id=\"recordings\"").nth(1).unwrap();
     assert!(drawn.contains(&barren));
@@ -306,7 +306,7 @@ fn a_run_name_that_leads_out_of_the_folder_is_refused_before_anything_is_written
     let error = report::write_run(&campaign, &results.runs[0], None, &inner).unwrap_err();
     assert!(matches!(&error, ReportError::RunId { id } if id == "../../escape"));
     assert!(error.to_string().contains("hint:"));
-    assert!(report::write_campaign(&campaign, &results, &inner).is_err());
+    assert!(report::write_campaign(&campaign, &results, None, &inner).is_err());
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
@@ -332,7 +332,7 @@ fn a_folder_that_cannot_be_written_is_named_in_the_error() {
     let folder = tempfile::tempdir().unwrap();
     let taken = folder.path().join("results");
     fs::write(&taken, "a file where the folder should be").unwrap();
-    let error = report::write_campaign(&campaign, &Results::default(), &taken).unwrap_err();
+    let error = report::write_campaign(&campaign, &Results::default(), None, &taken).unwrap_err();
     let message = error.to_string();
     assert!(message.contains("index.html") && message.contains("hint:"), "{message}");
 }

@@ -20,7 +20,7 @@ fn written() -> (tempfile::TempDir, Results) {
 /// The campaign's page, written to `folder`.
 fn page(results: &Results, folder: &Path) -> String {
     let campaign = synthetic_results::campaign("OE basin");
-    let path = report::write_campaign(&campaign, results, folder).expect("a report");
+    let path = report::write_campaign(&campaign, results, None, folder).expect("a report");
     fs::read_to_string(path).expect("a page")
 }
 

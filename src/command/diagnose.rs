@@ -8,9 +8,8 @@ use clap::Args;
 
 use super::{Exit, Failure};
 use crate::campaign::{self, Campaign};
-use crate::diagnosis::{self, Observation};
 use crate::model::model_file::ModelFile;
-use crate::pipeline::{self, Options};
+use crate::pipeline::{self, Observed, Options};
 use crate::report;
 
 /// Show what the simulation gets wrong, name the cause, and measure what mending it gains
@@ -28,20 +27,16 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
     let campaign = campaign::read(&arguments.campaign)?;
-    let mut observations = Vec::new();
-    let mut left_out = Vec::new();
+    let mut observed = Observed::new(&campaign);
     let options = Options { keep_histories: false, ..Options::default() };
     pipeline::replay(&campaign, &options, &mut |_| {}, &mut |run, _| {
-        match Observation::new(run, &campaign, observations.len()) {
-            Ok(observation) => observations.push(observation),
-            Err(reason) => left_out.push(format!("{}: {reason}", run.id)),
-        }
+        observed.hear(run);
         Ok(())
     })?;
-    for reason in &left_out {
+    for reason in observed.left_out() {
         tracing::warn!("run left out of the diagnosis: {reason}");
     }
-    let diagnosis = diagnosis::diagnose(observations, &campaign.tank);
+    let diagnosis = observed.diagnosed();
     if let Some(diagnosis) = diagnosis.as_ref().filter(|_| arguments.write_model) {
         write_model(&campaign, &diagnosis.model)?;
     }

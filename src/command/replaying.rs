@@ -8,7 +8,7 @@ use super::method::Identifying;
 use super::terminal::Terminal;
 use super::{Exit, Failure};
 use crate::campaign::Campaign;
-use crate::pipeline::{self, Options, Progress};
+use crate::pipeline::{self, Observed, Options, Progress};
 use crate::results::Results;
 
 /// What a replay brought.
@@ -35,6 +35,7 @@ pub(super) fn replay(
     };
     let terminal = Terminal::new();
     let mut n_lost = 0;
+    let mut observed = Observed::new(campaign);
     let results = pipeline::replay(
         campaign,
         &options,
@@ -50,6 +51,7 @@ pub(super) fn replay(
         &mut |run, overview| {
             terminal.line(&format!("{}  Fr {:.3}  {}", run.id, run.froude, run.condition));
             if let Some(dir) = into {
+                observed.hear(run);
                 pipeline::write_run_page(campaign, run, overview, dir)?;
             }
             Ok(())
@@ -57,7 +59,7 @@ pub(super) fn replay(
     )?;
     drop(terminal);
     if let Some(dir) = into {
-        pipeline::write_results(campaign, &results, dir)?;
+        pipeline::write_results(campaign, &results, observed.diagnosed().as_ref(), dir)?;
     }
     for sentence in pipeline::without_runs(&results) {
         tracing::warn!("{sentence}");

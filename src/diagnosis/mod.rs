@@ -20,9 +20,11 @@ mod score;
 mod settle;
 mod solve;
 mod survey;
+mod unexplained;
 mod verdict;
 
 pub use leftover::Leftover;
 pub use next_run::NextRun;
 pub use observation::Observation;
+pub use unexplained::Unexplained;
 pub use verdict::{Bias, Cause, Change, Diagnosis, Gain, Verdict, diagnose};

@@ -9,6 +9,7 @@ use super::records;
 use super::settle::Settled;
 use super::solve::Layout;
 use super::survey::{N_LAW, Survey};
+use super::unexplained::{Unexplained, unexplained};
 use crate::campaign::Tank;
 use crate::inverse::estimate::Estimate;
 use crate::model::effects;
@@ -98,6 +99,10 @@ pub struct Diagnosis {
     pub left_before: Vec<Leftover>,
     /// What the extended model leaves.
     pub left_after: Vec<Leftover>,
+    /// The moment that the base model leaves in every run.
+    pub unexplained_before: Vec<Unexplained>,
+    /// The moment that the extended model leaves.
+    pub unexplained_after: Vec<Unexplained>,
     /// What to tow next.
     pub next_run: Option<NextRun>,
     /// The extended model.
@@ -148,6 +153,8 @@ pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
         ranking: grown.ranking,
         left_before,
         left_after,
+        unexplained_before: unexplained(&survey, &grown.base.fit),
+        unexplained_after: unexplained(&survey, &grown.last.fit),
         next_run,
         model,
     })

@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use crate::campaign::Campaign;
 use crate::catalogue::{self, CatalogueError};
+use crate::diagnosis::Diagnosis;
 use crate::report::{self, ReportError};
 use crate::results::{IdentifiedRun, Overview, Results};
 
@@ -72,14 +73,16 @@ pub fn write_run_page(
 pub fn write_results(
     campaign: &Campaign,
     results: &Results,
+    diagnosis: Option<&Diagnosis>,
     dir: &Path,
 ) -> Result<PathBuf, WriteError> {
     remove_stale_pages(campaign, results, dir)?;
     report::csv_tables(campaign, results, dir)?;
     write_text(dir, IDENTIFICATION, &report::identification_json(campaign, results))?;
     write_text(dir, "identification.schema.json", report::IDENTIFICATION_SCHEMA)?;
+    report::write_diagnosis(campaign, diagnosis, dir)?;
     catalogue::write(&dir.join(CATALOGUE), campaign, results)?;
-    Ok(report::write_campaign(campaign, results, dir)?)
+    Ok(report::write_campaign(campaign, results, diagnosis, dir)?)
 }
 
 fn write_text(dir: &Path, name: &str, text: &str) -> Result<(), WriteError> {

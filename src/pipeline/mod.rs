@@ -6,6 +6,7 @@
 mod asking;
 mod claims;
 mod collect;
+mod diagnosing;
 mod error;
 mod files;
 mod histories;
@@ -25,6 +26,7 @@ use crate::campaign::Campaign;
 use crate::inverse::identification::Method;
 use crate::results::{IdentifiedRun, Overview, Results};
 
+pub use diagnosing::Observed;
 pub use error::PipelineError;
 pub use files::{REPORT_PAGE, WriteError, results_folder, write_results, write_run_page};
 pub use names::labels;

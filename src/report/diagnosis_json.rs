@@ -2,7 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::diagnosis::{Bias, Cause, Change, Diagnosis, Gain, Leftover, NextRun, Verdict};
+use crate::diagnosis::{
+    Bias, Cause, Change, Diagnosis, Gain, Leftover, NextRun, Unexplained, Verdict,
+};
 use crate::inverse::estimate::Estimate;
 use crate::model::effects::UNTESTABLE;
 
@@ -143,7 +145,28 @@ fn residual(diagnosis: &Diagnosis) -> Value {
         "summary": where_it_lives(&diagnosis.left_after),
         "before": diagnosis.left_before.iter().map(line).collect::<Vec<_>>(),
         "after": diagnosis.left_after.iter().map(line).collect::<Vec<_>>(),
+        "moment_before": moments(&diagnosis.unexplained_before),
+        "moment_after": moments(&diagnosis.unexplained_after),
     })
+}
+
+/// The moment that each run leaves, with its band.
+fn moments(left: &[Unexplained]) -> Vec<Value> {
+    let one = |left: &Unexplained| {
+        json!({
+            "run": left.run,
+            "share": left.share,
+            "share_of_damping": left.share_of_damping,
+            "share_of_instants_outside": left.outside,
+            "time_s": left.time_s,
+            "roll_rad": left.roll_rad,
+            "roll_rate_rad_per_s": left.rate_rad_per_s,
+            "roll_acceleration_rad_per_s2": left.acceleration_rad_per_s2,
+            "mean_n_m": left.mean_n_m,
+            "sd_n_m": left.sd_n_m,
+        })
+    };
+    left.iter().map(one).collect()
 }
 
 /// Where most is left, in words.

@@ -19,13 +19,8 @@ pub fn diagnosis_text(diagnosis: Option<&Diagnosis>) -> String {
 }
 
 fn tell(text: &mut String, diagnosis: &Diagnosis) -> std::fmt::Result {
-    let meaning = match diagnosis.verdict {
-        Verdict::Adequate => "the simulation agrees with these runs to within their noise",
-        Verdict::Named => "the simulation lacks what follows",
-        Verdict::Ambiguous => "the simulation lacks what follows; these runs leave a choice",
-        Verdict::Unexplained => "the simulation lacks something that no known effect explains",
-    };
-    writeln!(text, "{}: {meaning}", word(diagnosis.verdict).to_uppercase())?;
+    let verdict = diagnosis.verdict;
+    writeln!(text, "{}: {}", word(verdict).to_uppercase(), meaning(verdict))?;
     for one in &diagnosis.causes {
         cause(text, one)?;
     }
@@ -66,6 +61,16 @@ fn tell(text: &mut String, diagnosis: &Diagnosis) -> std::fmt::Result {
     }
     let untestable: Vec<&str> = UNTESTABLE.iter().map(|(effect, _)| *effect).collect();
     writeln!(text, "\nno roll test can say anything of {}", untestable.join(", "))
+}
+
+/// What a verdict says of the simulation.
+pub(super) fn meaning(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Adequate => "the simulation agrees with these runs to within their noise",
+        Verdict::Named => "the simulation lacks what follows",
+        Verdict::Ambiguous => "the simulation lacks what follows; these runs leave a choice",
+        Verdict::Unexplained => "the simulation lacks something that no known effect explains",
+    }
 }
 
 fn cause(text: &mut String, cause: &Cause) -> std::fmt::Result {

@@ -4,6 +4,7 @@ mod campaign_page;
 mod csv_tables;
 mod damping_table;
 mod diagnosis_json;
+mod diagnosis_page;
 mod diagnosis_text;
 mod document;
 mod field_units;
@@ -26,6 +27,7 @@ pub use diagnosis_text::diagnosis_text;
 pub use json::{IDENTIFICATION_SCHEMA, identification_json};
 
 use crate::campaign::Campaign;
+use crate::diagnosis::Diagnosis;
 use crate::results::{IdentifiedRun, Overview, RejectedStretch, Results};
 
 /// Why a report could not be written.
@@ -79,10 +81,11 @@ const DAMPING_FIGURE: &str = "damping_against_froude.svg";
 
 /// Writes the campaign's page, `index.html`, to `dir`; returns its path.
 ///
-/// Its figure of damping against Froude number is left beside it as a file of its own.
+/// With a diagnosis it leads to the page of [`write_diagnosis`]. Its figure of damping against Froude number is left beside it as a file of its own.
 pub fn write_campaign(
     campaign: &Campaign,
     results: &Results,
+    diagnosis: Option<&Diagnosis>,
     dir: &Path,
 ) -> Result<PathBuf, ReportError> {
     for run in &results.runs {
@@ -92,8 +95,23 @@ pub fn write_campaign(
         let drawing = figure.file().into_string();
         whole_file::write(dir, DAMPING_FIGURE, drawing.as_bytes())?;
     }
-    let page = campaign_page::html(campaign, results);
+    let page = campaign_page::html(campaign, results, diagnosis);
     whole_file::write(dir, "index.html", page.into_string().as_bytes())
+}
+
+/// File name of the page of the diagnosis.
+pub const DIAGNOSIS_PAGE: &str = "diagnosis.html";
+
+/// Writes the diagnosis, as a page and as JSON with its schema, to `dir`; returns the page's path.
+pub fn write_diagnosis(
+    campaign: &Campaign,
+    diagnosis: Option<&Diagnosis>,
+    dir: &Path,
+) -> Result<PathBuf, ReportError> {
+    whole_file::write(dir, "diagnosis.json", diagnosis_json(diagnosis).as_bytes())?;
+    whole_file::write(dir, "diagnosis.schema.json", DIAGNOSIS_SCHEMA.as_bytes())?;
+    let page = diagnosis_page::html(&campaign.name, diagnosis);
+    whole_file::write(dir, DIAGNOSIS_PAGE, page.into_string().as_bytes())
 }
 
 /// Writes the page of every run and the campaign's page to `dir`; returns the campaign's page.
@@ -106,7 +124,7 @@ pub fn write_all(
         let overview = results.overviews.iter().find(|seen| seen.recording == run.recording);
         write_marked_run(campaign, run, overview, &results.rejected, dir)?;
     }
-    write_campaign(campaign, results, dir)
+    write_campaign(campaign, results, None, dir)
 }
 
 fn write_marked_run(

@@ -6,6 +6,7 @@
 
 pub mod coloured;
 pub mod damped;
+pub mod drifting;
 pub mod filter;
 pub mod history;
 pub mod matern;

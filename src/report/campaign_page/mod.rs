@@ -4,6 +4,7 @@ mod alike;
 mod at_speeds;
 mod conditions;
 mod damping_against_froude;
+mod diagnosis;
 mod equivalent_damping;
 mod forced_damping;
 mod forced_runs;
@@ -22,12 +23,14 @@ use maud::{Markup, html};
 
 use super::{document, field_units::FieldUnits, figure::Figure, glossary};
 use crate::campaign::Campaign;
+use crate::diagnosis::Diagnosis;
 use crate::inverse::identification::ForcedResponse;
 use crate::results::{IdentifiedRun, Results};
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&CampaignPage) -> Option<Markup>; 15] = [
+const PARTS: [fn(&CampaignPage) -> Option<Markup>; 16] = [
     at_speeds::part,
+    diagnosis::part,
     law_gaps::part,
     damping_against_froude::part,
     froude_law::part,
@@ -49,6 +52,7 @@ const PARTS: [fn(&CampaignPage) -> Option<Markup>; 15] = [
 struct CampaignPage<'a> {
     campaign: &'a Campaign,
     results: &'a Results,
+    diagnosis: Option<&'a Diagnosis>,
 }
 
 impl<'a> CampaignPage<'a> {
@@ -82,8 +86,12 @@ impl<'a> CampaignPage<'a> {
 }
 
 /// The page of the campaign.
-pub(super) fn html(campaign: &Campaign, results: &Results) -> Markup {
-    let page = CampaignPage { campaign, results };
+pub(super) fn html(
+    campaign: &Campaign,
+    results: &Results,
+    diagnosis: Option<&Diagnosis>,
+) -> Markup {
+    let page = CampaignPage { campaign, results, diagnosis };
     let (refused, changeovers) = results.refusals_and_changeovers();
     let body = html! {
         h1 { (campaign.name) }
@@ -110,7 +118,7 @@ pub(super) fn html(campaign: &Campaign, results: &Results) -> Markup {
 
 /// The figure of damping against Froude number, if a run was identified.
 pub(super) fn damping_figure(campaign: &Campaign, results: &Results) -> Option<Figure> {
-    damping_against_froude::figure(&CampaignPage { campaign, results })
+    damping_against_froude::figure(&CampaignPage { campaign, results, diagnosis: None })
 }
 
 fn counted(n: usize, noun: &str) -> String {
