@@ -1,4 +1,4 @@
-//! Crests that are cut off at the end of a channel's range, told by their missing curvature.
+//! Readings that stop at the end of a channel's range.
 
 use super::facts::rough_noise;
 use crate::model::Clip;
@@ -11,8 +11,39 @@ const FLAT: f64 = 0.35;
 /// Crests within this share of the largest reading may be at the end of the range.
 const NEAR_TOP: f64 = 0.97;
 
-/// The level at which crests are flat, if two or more are or one is without doubt.
+/// The level at which readings stop: repeated to the last digit in spite of the noise, or two or
+/// more crests flat, or one without doubt.
 pub(super) fn clip(roll: &Series, rolling_rad_s: f64) -> Option<Clip> {
+    stuck(&roll.value).or_else(|| flat_crests(roll, rolling_rad_s))
+}
+
+/// Readings in a row that noise would never leave alike, at the end of what the channel reads.
+fn stuck(values: &[f64]) -> Option<Clip> {
+    let noise_rad = rough_noise(values);
+    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let step_rad = steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
+    // Chance that noise leaves a reading where it was.
+    let alike = step_rad / (2.0 * std::f64::consts::PI.sqrt() * noise_rad);
+    let tail = &values[values.len() - (values.len() / 5).max(1)..];
+    let middle = tail.iter().sum::<f64>() / tail.len() as f64;
+    let end_of = |sign: f64| -> Clip {
+        let end = values.iter().map(|v| sign * (v - middle)).fold(f64::NEG_INFINITY, f64::max);
+        let is_there = |value: &f64| sign * (value - middle) >= end;
+        let rows = values.split(|value| !is_there(value)).map(<[f64]>::len);
+        let n_alike: usize = rows.map(|n| n.saturating_sub(1)).sum();
+        // Any reading may be the largest; that its neighbour is too takes chance.
+        let log_bayes_factor = -(n_alike as f64) * alike.min(1.0).ln() - 5.0;
+        Clip { level_rad: end, sd_rad: step_rad, log_bayes_factor }
+    };
+    let ends = [end_of(1.0), end_of(-1.0)];
+    let [surest, other] =
+        if ends[0].log_bayes_factor > ends[1].log_bayes_factor { ends } else { [ends[1], ends[0]] };
+    let is_wide = surest.level_rad > 0.5 * other.level_rad;
+    (surest.log_bayes_factor > 10.0 && alike < 0.5 && is_wide).then_some(surest)
+}
+
+/// Crests that are flat at one level.
+fn flat_crests(roll: &Series, rolling_rad_s: f64) -> Option<Clip> {
     let values = &roll.value;
     let noise_rad = rough_noise(values);
     let tail = &values[values.len() - (values.len() / 5).max(1)..];

@@ -24,9 +24,11 @@ pub(super) fn of(
 ) -> Facts {
     let n = roll.time_s.len();
     let sample_rate_hz = (n - 1) as f64 / (roll.time_s[n - 1] - roll.time_s[0]);
-    let line = line(&roll.value, sample_rate_hz, rolling_rad_s);
+    let lowest_hz = (5.0 * rolling_rad_s / std::f64::consts::TAU).max(3.5);
+    let line = line(&roll.value, sample_rate_hz, lowest_hz);
+    let line_band_hz = [lowest_hz, 0.5 * sample_rate_hz];
     let clip = clipping::clip(roll, rolling_rad_s);
-    Facts { quantum_rad, line, n_samples: n, sample_rate_hz, froude, clip }
+    Facts { quantum_rad, line, line_band_hz, n_samples: n, sample_rate_hz, froude, clip }
 }
 
 /// Samples in which a line is sought; more say no more than that it is there.
@@ -35,7 +37,7 @@ const LONGEST: usize = 4096;
 const LEAST: f64 = 12.0;
 
 /// The strongest line well above the roll's own harmonics.
-fn line(values: &[f64], rate_hz: f64, rolling_rad_s: f64) -> Option<Line> {
+fn line(values: &[f64], rate_hz: f64, lowest_hz: f64) -> Option<Line> {
     let differences = fourth_differences(&values[..values.len().min(LONGEST)]);
     let n = differences.len();
     if n < 64 {
@@ -46,7 +48,6 @@ fn line(values: &[f64], rate_hz: f64, rolling_rad_s: f64) -> Option<Line> {
         .enumerate()
         .map(|(i, d)| d * (std::f64::consts::PI * (i as f64 + 0.5) / n as f64).sin().powi(2))
         .collect();
-    let lowest_hz = (5.0 * rolling_rad_s / std::f64::consts::TAU).max(3.5);
     let first = (lowest_hz * n as f64 / rate_hz).ceil() as usize;
     let powers: Vec<f64> = (first..=n / 2)
         .map(|bin| power(&windowed, std::f64::consts::TAU * bin as f64 / n as f64))

@@ -1,17 +1,20 @@
 //! The model grows by one effect at a time until nothing more is to be named.
 
-use super::alike::{SAME, SAME_SHARE, contains, explained, is_approximate, is_same};
+use super::alike::{SAME, contains, explained, is_approximate, is_same};
 use super::leftover::{self, Leftover};
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score};
 use super::settle::{Settled, settle};
 use super::solve::Layout;
 use super::survey::{Extension, Fit, Survey};
+use crate::model::effects;
 
 /// Least logarithm of a Bayes factor at which an effect may enter: one in a thousand by chance.
 pub(super) const ENTERS: f64 = 7.0;
 /// Share of what is left for sure that an effect must take away to enter.
 const ENOUGH: f64 = 0.2;
+/// Share of what an approximate effect explains that it may leave of itself.
+const CRUMB: f64 = 0.03;
 /// Most effects of a model.
 const MOST: usize = 5;
 /// Times that the base model is settled anew with the noise that it left.
@@ -26,6 +29,8 @@ pub(super) struct Entered {
     pub(super) log_bayes_factor: f64,
     /// What it explains: the fall of the misfit.
     pub(super) explained: f64,
+    /// What it removes of what is left beyond the noise, in units of its variance.
+    removed: f64,
     pub(super) equivalent_to: Vec<&'static str>,
 }
 
@@ -80,7 +85,15 @@ pub(super) fn grow(survey: &Survey) -> Grown {
         (current, entered) = check_backward(survey, current, entered, &noise);
     }
     let base = settle(survey, base_fit, &noise);
-    let last = settle(survey, current.fit, &noise);
+    let mut last = settle(survey, current.fit, &noise);
+    while let Some(wild) = (0..entered.len()).find(|e| !is_plausible(survey, &last, *e)) {
+        // An effect may have left its range as the others came.
+        let Entered { id, log_bayes_factor, .. } = entered.remove(wild);
+        implausible.push((id, log_bayes_factor));
+        let mut fit = last.fit.clone();
+        fit.extensions.remove(wild);
+        last = settle(survey, fit, &noise);
+    }
     Grown { base, last, noise, entered, ranking, implausible }
 }
 
@@ -139,12 +152,20 @@ fn step(
     }
     ranking.sort_by(|a, b| b.1.total_cmp(&a.1));
     let (plausible, wild): (Vec<Tried>, Vec<Tried>) =
-        tried.into_iter().partition(|one| is_plausible(survey, &one.settled));
-    let implausible = wild
+        tried.into_iter().partition(|one| is_newest_plausible(survey, &one.settled));
+    let implausible: Vec<(&'static str, f64)> = wild
         .iter()
         .map(|one| (one.id, one.settled.log_evidence - current.log_evidence))
         .filter(|(_, log)| *log > ENTERS)
         .collect();
+    for one in &plausible {
+        let log = one.settled.log_evidence - current.log_evidence;
+        let left = excess(&leftovers(survey, &one.settled.fit));
+        tracing::debug!(effect = one.id, log, left, "tried");
+    }
+    for (effect, log) in &implausible {
+        tracing::debug!(effect, log, "outside its physical range");
+    }
     let won = winner(survey, &current, plausible, entered);
     Some(Step { won, noise, ranking, implausible })
 }
@@ -166,19 +187,20 @@ fn winner(
         return None;
     }
     let explained = explained(survey, current, &best.settled);
+    let left = excess(&leftovers(survey, &best.settled.fit));
+    let removed = excess(&leftovers(survey, &current.fit)) - left;
     // What an approximate effect leaves of itself is no other effect.
     let crumbs = known.iter().filter(|entered| is_approximate(entered.id));
-    if crumbs.map(|entered| SAME_SHARE * entered.explained).any(|crumb| explained < crumb) {
+    if crumbs.map(|entered| CRUMB * entered.removed).any(|crumb| removed < crumb) {
         return None;
     }
-    let left = excess(&leftovers(survey, &best.settled.fit));
     let equivalent_to = plausible[1..]
         .iter()
         .filter(|one| !contains(one.id, best.id))
         .filter(|one| is_same(survey, current, &best.settled, &one.settled, left))
         .map(|one| one.id)
         .collect();
-    let entered = Entered { id: best.id, log_bayes_factor, explained, equivalent_to };
+    let entered = Entered { id: best.id, log_bayes_factor, explained, removed, equivalent_to };
     plausible.into_iter().next().map(|best| (best.settled, entered))
 }
 
@@ -202,10 +224,10 @@ fn simpler(
                 let Some(reading) = scores.iter().find(|s| s.extension.effect.id == *id) else {
                     continue;
                 };
-                let fit = with(&without.fit, reading.extension.clone());
+                let fit = with(survey, &without.fit, reading.extension.clone(), noise);
                 let settled = settle(survey, fit, noise);
                 if settled.log_evidence > current.log_evidence - 0.25 * SAME
-                    && is_plausible(survey, &settled)
+                    && is_newest_plausible(survey, &settled)
                 {
                     let mut fit = settled.fit;
                     let newest = fit.extensions.pop()?;
@@ -231,7 +253,13 @@ fn explains_enough(survey: &Survey, before: &Fit, after: &Fit) -> bool {
     if !before.iter().any(Leftover::is_sure) {
         return true;
     }
-    excess(&before) - excess(&after) > ENOUGH * excess(&before)
+    // A ringing above the frequencies of roll is taken for noise until its cause is known.
+    let sure = before.iter().zip(&after).filter(|(before, _)| before.is_sure());
+    let (n_sure, n_mended) = sure.fold((0, 0), |(all, mended), (before, after)| {
+        let is_mended = after.rms.powi(2) < (1.0 - ENOUGH) * before.rms.powi(2);
+        (all + 1, mended + usize::from(is_mended))
+    });
+    excess(&before) - excess(&after) > ENOUGH * excess(&before) || 2 * n_mended >= n_sure
 }
 
 /// What is left beyond the noise, in units of its variance.
@@ -282,14 +310,14 @@ fn check_backward(
         entered[e].explained = explained;
         entered[e].equivalent_to = tried
             .iter()
-            .filter(|one| is_plausible(survey, &one.settled))
+            .filter(|one| is_newest_plausible(survey, &one.settled))
             .filter(|one| !contains(one.id, taken.effect.id))
             .filter(|one| is_same(survey, &without, &current, &one.settled, left))
             .map(|one| one.id)
             .collect();
         let better = tried
             .into_iter()
-            .filter(|one| is_plausible(survey, &one.settled))
+            .filter(|one| is_newest_plausible(survey, &one.settled))
             .filter(|one| one.settled.log_evidence > current.log_evidence + 0.5 * SAME)
             .max_by(|a, b| a.settled.log_evidence.total_cmp(&b.settled.log_evidence));
         if let Some(better) = better {
@@ -336,31 +364,54 @@ fn fit_all(
     scores
         .iter()
         .map(|scored| {
-            let settled = settle(survey, with(&current.fit, scored.extension.clone()), noise);
+            let settled =
+                settle(survey, with(survey, &current.fit, scored.extension.clone(), noise), noise);
             Tried { settled, id: scored.extension.effect.id }
         })
         .collect()
 }
 
-/// The model with one more effect, its strengths brought into their range.
-fn with(fit: &Fit, mut extension: Extension) -> Fit {
+/// The model with one more effect: with the strengths that the score gives it where they help as
+/// they are, else without any, from where all numbers move together.
+fn with(survey: &Survey, fit: &Fit, mut extension: Extension, noise: &[ChannelNoise]) -> Fit {
     let effect = extension.effect;
+    let n_strengths = effect.strengths.len();
     for values in &mut extension.slots {
         for (k, value) in values.iter_mut().enumerate() {
             let [low, high] = effect.parameter(k).range;
             *value = value.clamp(low, high);
         }
     }
-    let mut fit = fit.clone();
-    fit.extensions.push(extension);
-    fit
+    let mut idle = fit.clone();
+    let mut at_rest = extension.clone();
+    at_rest.slots.iter_mut().for_each(|values| values[..n_strengths].fill(0.0));
+    idle.extensions.push(at_rest);
+    let mut acting = fit.clone();
+    for (run, slot) in extension.slot_of.iter().enumerate() {
+        let values = slot.map(|slot| &extension.slots[slot]);
+        let base = &fit.states[run].base;
+        let exchanged = values
+            .and_then(|values| effects::exchanged(effect, base, &survey.runs[run].at, values));
+        acting.states[run].base = exchanged.unwrap_or(*base);
+    }
+    acting.extensions.push(extension);
+    let is_exchange = (0..survey.runs.len()).any(|r| acting.states[r].base != fit.states[r].base);
+    if is_exchange || survey.misfit(&acting, noise) < survey.misfit(&idle, noise) {
+        acting
+    } else {
+        idle
+    }
 }
 
-/// Whether the newest effect lies inside its physical range, as far as its deviation allows.
-fn is_plausible(survey: &Survey, settled: &Settled) -> bool {
-    let Some(extension) = settled.fit.extensions.last() else { return true };
+/// Whether the newest effect lies inside its physical range.
+fn is_newest_plausible(survey: &Survey, settled: &Settled) -> bool {
+    settled.fit.extensions.len().checked_sub(1).is_none_or(|e| is_plausible(survey, settled, e))
+}
+
+/// Whether an effect lies inside its physical range, as far as its deviation allows.
+fn is_plausible(survey: &Survey, settled: &Settled, e: usize) -> bool {
+    let extension = &settled.fit.extensions[e];
     let layout = Layout::new(survey, &settled.fit);
-    let e = settled.fit.extensions.len() - 1;
     extension.slots.iter().enumerate().all(|(s, values)| {
         (0..extension.effect.strengths.len()).all(|k| {
             let [low, high] = extension.effect.strengths[k].range;

@@ -1,52 +1,110 @@
 //! Causes that a record shows by itself: its steps, and lines in its noise.
 
+use super::observation::Observation;
 use super::survey::Survey;
 use super::verdict::Cause;
 use crate::inverse::estimate::Estimate;
 use crate::model::effects;
-use crate::model::{Acts, Effect, Seen};
+use crate::model::{Acts, Effect, Recurs, Seen};
 
 /// Least logarithm of a Bayes factor over all runs.
 const SURE: f64 = 14.0;
+/// Deviation [Hz], and as a share, within which two records show one line.
+const ONE_LINE_HZ: f64 = 0.15;
+const ONE_LINE_SHARE: f64 = 0.02;
+
+/// What the records show of one effect.
+struct Found {
+    log_bayes_factor: f64,
+    cause: Cause,
+    recurs: Option<Recurs>,
+}
 
 /// The causes that the records show, where the runs that can show one do.
 pub(super) fn causes(survey: &Survey) -> Vec<Cause> {
-    let mut found: Vec<(f64, Cause, bool)> = Vec::new();
+    found(survey).into_iter().map(|found| found.cause).collect()
+}
+
+/// Whether a line that the records show is what is left at a frequency [rad/s] of a run.
+pub(super) fn is_told(survey: &Survey, run: &str, frequency_rad_s: f64) -> bool {
+    let Some(run) = survey.runs.iter().find(|observed| observed.id == run) else { return false };
+    let hz = frequency_rad_s / std::f64::consts::TAU;
+    let resolution_hz = 1.5 / run.at.span_s;
+    let lines = found(survey).into_iter().filter_map(|found| found.recurs);
+    let mut expected = lines.map(|line| line.frequency_hz(run.at.froude));
+    expected.any(|line_hz| (line_hz - hz).abs() < resolution_hz + ONE_LINE_SHARE * hz)
+}
+
+fn found(survey: &Survey) -> Vec<Found> {
+    let mut found: Vec<Found> = Vec::new();
     for effect in effects::all() {
         let Acts::Record(sees) = effect.acts else { continue };
-        let able = survey.runs.iter().filter(|run| (effect.shows)(&run.at));
-        let seen: Vec<Option<Seen>> = able.map(|run| sees(&run.facts)).collect();
-        let total: f64 = seen.iter().flatten().map(|s| s.log_bayes_factor).sum();
-        let n_seen = seen.iter().flatten().filter(|s| s.log_bayes_factor > 0.0).count();
-        let is_line = effect.strengths.iter().any(|p| p.unit == "Hz");
-        // A line belongs to the chain and shows in most of its records, not in one.
-        if total > SURE && (!is_line || 2 * n_seen >= seen.len()) {
-            found.push((total, cause(effect, &seen, total), is_line));
+        let able: Vec<&Observation> =
+            survey.runs.iter().filter(|run| (effect.shows)(&run.at)).collect();
+        let seen: Vec<(&Observation, Seen)> =
+            able.iter().filter_map(|run| Some((*run, sees(&run.facts)?))).collect();
+        let is_line = seen.iter().any(|(_, seen)| seen.recurs.is_some());
+        let told = if is_line { one_line(&able, &seen) } else { Some(seen) };
+        let Some(seen) = told else { continue };
+        let log_bayes_factor = seen.iter().map(|(_, seen)| seen.log_bayes_factor).sum();
+        if log_bayes_factor > SURE {
+            let recurs = seen[0].1.recurs;
+            let seen: Vec<Seen> = seen.into_iter().map(|(_, seen)| seen).collect();
+            let cause = cause(effect, &seen, log_bayes_factor);
+            found.push(Found { log_bayes_factor, cause, recurs });
         }
     }
     // One line has one cause: the one that explains it in more runs, the first of equals.
-    let best_line = found.iter().filter(|f| f.2).map(|f| f.0).fold(f64::NEG_INFINITY, f64::max);
+    let lines = found.iter().filter(|found| found.recurs.is_some());
+    let best = lines.map(|found| found.log_bayes_factor).fold(f64::NEG_INFINITY, f64::max);
     let mut line_told = false;
-    let mut causes = Vec::new();
-    for (total, cause, is_line) in found {
-        if !is_line {
-            causes.push(cause);
-        } else if !line_told && total > 0.95 * best_line {
-            line_told = true;
-            causes.push(cause);
-        }
-    }
-    causes
+    found.retain(|found| {
+        let keeps = found.recurs.is_none() || (!line_told && found.log_bayes_factor > 0.95 * best);
+        line_told |= keeps && found.recurs.is_some();
+        keeps
+    });
+    found
 }
 
-fn cause(effect: &'static Effect, seen: &[Option<Seen>], total: f64) -> Cause {
+/// The records that show one and the same line, the surest first, if half of those in whose band
+/// it lies do: a line belongs to the chain or the carriage and not to one record.
+fn one_line<'s>(
+    able: &[&Observation],
+    seen: &[(&'s Observation, Seen)],
+) -> Option<Vec<(&'s Observation, Seen)>> {
+    let group = |line: Recurs| -> Vec<(&'s Observation, Seen)> {
+        let is_same = |(run, seen): &&(&Observation, Seen)| {
+            let expected_hz = line.frequency_hz(run.at.froude);
+            let hz = seen.recurs.map_or(f64::NAN, |own| own.frequency_hz(run.at.froude));
+            let off_hz = (hz - expected_hz).abs();
+            seen.log_bayes_factor > 0.0 && off_hz < ONE_LINE_HZ.max(ONE_LINE_SHARE * expected_hz)
+        };
+        let mut group: Vec<_> = seen.iter().filter(is_same).cloned().collect();
+        group.sort_by(|a, b| b.1.log_bayes_factor.total_cmp(&a.1.log_bayes_factor));
+        group
+    };
+    let sum = |group: &[(&Observation, Seen)]| -> f64 {
+        group.iter().map(|(_, seen)| seen.log_bayes_factor).sum()
+    };
+    let lines = seen.iter().filter_map(|(_, seen)| seen.recurs);
+    let (line, best) =
+        lines.map(|line| (line, group(line))).max_by(|a, b| sum(&a.1).total_cmp(&sum(&b.1)))?;
+    let could = |run: &&&Observation| {
+        let [low, high] = run.facts.line_band_hz;
+        (low..high).contains(&line.frequency_hz(run.at.froude))
+    };
+    let n_could = able.iter().filter(could).count();
+    (2 * best.len() >= n_could && !best.is_empty()).then_some(best)
+}
+
+fn cause(effect: &'static Effect, seen: &[Seen], total: f64) -> Cause {
     let parameters = effect
         .strengths
         .iter()
         .enumerate()
         .map(|(k, parameter)| {
             let values: Vec<(f64, f64)> =
-                seen.iter().flatten().filter_map(|s| s.values.get(k).copied()).collect();
+                seen.iter().filter_map(|s| s.values.get(k).copied()).collect();
             let weight: f64 = values.iter().map(|(_, sd)| sd.powi(-2)).sum();
             let mean = values.iter().map(|(v, sd)| v * sd.powi(-2)).sum::<f64>() / weight;
             (parameter.symbol, parameter.unit, Estimate::normal(mean, weight.sqrt().recip()))

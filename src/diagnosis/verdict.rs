@@ -123,8 +123,13 @@ pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
     let left_after = leftovers(&survey, &grown.last.fit);
     let mut causes = causes(&survey, &grown);
     let mut suspects = Vec::new();
-    let is_left = left_after.iter().any(Leftover::is_sure);
-    let untold = is_left && excess(&left_after) > MOST_LEFT * excess(&left_before);
+    let untold_left: Vec<Leftover> = left_after
+        .iter()
+        .filter(|left| !records::is_told(&survey, &left.run, left.frequency_rad_s))
+        .cloned()
+        .collect();
+    let is_left = untold_left.iter().any(Leftover::is_sure);
+    let untold = is_left && excess(&untold_left) > MOST_LEFT * excess(&left_before);
     if untold {
         suspects = causes.iter().map(|cause| cause.effect).collect();
         causes.clear();

@@ -101,6 +101,8 @@ pub struct Facts {
     pub quantum_rad: Option<f64>,
     /// A line in its noise.
     pub line: Option<Line>,
+    /// Where lines are sought [Hz]: above the roll and its harmonics.
+    pub line_band_hz: [f64; 2],
     /// Samples.
     pub n_samples: usize,
     /// Sample rate [Hz].
@@ -142,6 +144,27 @@ pub struct Seen {
     pub log_bayes_factor: f64,
     /// Mean and standard deviation of each strength.
     pub values: Vec<(f64, f64)>,
+    /// Where the same cause would show a line in another run; none for what is no line.
+    pub recurs: Option<Recurs>,
+}
+
+/// How the frequency of a line depends on the run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Recurs {
+    /// The same frequency everywhere [Hz].
+    Fixed(f64),
+    /// In proportion to the Froude number [Hz].
+    PerFroude(f64),
+}
+
+impl Recurs {
+    /// Frequency of the line [Hz] at a Froude number.
+    pub fn frequency_hz(&self, froude: f64) -> f64 {
+        match self {
+            Self::Fixed(hz) => *hz,
+            Self::PerFroude(hz) => hz * froude,
+        }
+    }
 }
 
 /// Earlier motion of a run.

@@ -12,6 +12,6 @@ pub mod model_file;
 pub mod term;
 
 pub use effect::{
-    Acts, Circumstances, Clip, Effect, Facts, Instant, Layer, Line, Parameter, Scope, Seen,
+    Acts, Circumstances, Clip, Effect, Facts, Instant, Layer, Line, Parameter, Recurs, Scope, Seen,
 };
 pub use term::{Base, Term};

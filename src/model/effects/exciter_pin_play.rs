@@ -1,15 +1,18 @@
-//! Play of the pin joint: a knock whenever the force changes sign.
+//! Play of the pin joint: the force rings whenever it changes sign.
 
-use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, forced, one_node};
+use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, forced};
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
     id: "exciter.pin_play",
     layer: Layer::Exciter,
-    equation: "knock where M changes sign, as a share of K A",
-    strengths: &[Parameter::new("m", "-", 0.05, [-0.5, 0.5])],
-    shapes: &[],
-    nodes: one_node,
+    equation: "m K A exp(-t/tr) sin(v t), t since M changed sign",
+    strengths: &[Parameter::new("m", "-", 0.1, [-2.0, 2.0])],
+    shapes: &[
+        Parameter::new("tr", "s", 0.02, [0.005, 0.3]),
+        Parameter::new("v", "rad/s", 30.0, [40.0, 600.0]),
+    ],
+    nodes: |_| [60.0, 100.0, 150.0, 220.0, 320.0].map(|ringing| vec![0.05, ringing]).to_vec(),
     scope: Scope::Campaign,
     shows: forced,
     acts: Acts::Drive(law),
@@ -18,6 +21,16 @@ pub(super) const EFFECT: Effect = Effect {
 };
 
 fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
-    let size = i.run.inertia_kg_m2 * i.run.natural_rad_s.powi(2) * i.run.amplitude_rad;
-    p[0] * size * i.rate_rad_per_s.signum() * (-(i.moment_n_m / (0.03 * size)).powi(2)).exp()
+    let (w, rolling) = (i.run.natural_rad_s, i.run.rolling_rad_s);
+    let inertia = i.run.inertia_kg_m2;
+    // The moment of a sine tells by its growth how long ago it changed sign.
+    let growth = inertia
+        * ((w * w - rolling * rolling) * i.rate_rad_per_s
+            + i.run.b1_per_s * i.acceleration_rad_per_s2);
+    let since_s = (rolling * i.moment_n_m / growth).atan() / rolling;
+    if since_s < 0.0 {
+        return 0.0;
+    }
+    let ringing = (-since_s / p[1]).exp() * (p[2] * since_s).sin();
+    p[0] * inertia * w * w * i.run.amplitude_rad * growth.signum() * ringing
 }

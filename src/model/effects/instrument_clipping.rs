@@ -24,5 +24,6 @@ fn seen(facts: &Facts) -> Option<Seen> {
     Some(Seen {
         log_bayes_factor: clip.log_bayes_factor,
         values: vec![(clip.level_rad, clip.sd_rad)],
+        recurs: None,
     })
 }

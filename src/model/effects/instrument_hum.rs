@@ -1,6 +1,8 @@
 //! A line that is there whatever the model does, as mains make it.
 
-use crate::model::effect::{Acts, Effect, Facts, Layer, Parameter, Scope, Seen, any_run, one_node};
+use crate::model::effect::{
+    Acts, Effect, Facts, Layer, Parameter, Recurs, Scope, Seen, any_run, one_node,
+};
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -28,7 +30,7 @@ fn seen(facts: &Facts) -> Option<Seen> {
     let is_mains = mains.iter().any(|hz| (hz - line.frequency_hz).abs() < 0.3);
     let log_bayes_factor =
         if is_mains || facts.froude < 0.01 { line.log_bayes_factor } else { -1.0 };
-    Some(Seen { log_bayes_factor, values })
+    Some(Seen { log_bayes_factor, values, recurs: Some(Recurs::Fixed(line.frequency_hz)) })
 }
 
 /// Where a frequency shows when sampled at `rate_hz`.

@@ -24,5 +24,6 @@ const FINE_RAD: f64 = 0.0007;
 fn seen(facts: &Facts) -> Option<Seen> {
     let quantum_rad = facts.quantum_rad.filter(|q| *q >= FINE_RAD)?;
     let sd_rad = quantum_rad * 1e-3;
-    Some(Seen { log_bayes_factor: facts.n_samples as f64, values: vec![(quantum_rad, sd_rad)] })
+    let log_bayes_factor = facts.n_samples as f64;
+    Some(Seen { log_bayes_factor, values: vec![(quantum_rad, sd_rad)], recurs: None })
 }

@@ -47,7 +47,8 @@ mod tank_slow_release;
 mod tank_unsteady_speed;
 mod tank_wall_reflection;
 
-use super::effect::Effect;
+use super::effect::{Circumstances, Effect};
+use super::term::Base;
 
 /// Every effect that can be fitted.
 pub const EFFECTS: [Effect; 46] = [
@@ -120,4 +121,14 @@ pub fn effect(id: &str) -> Option<&'static Effect> {
 pub fn all() -> &'static [Effect] {
     static TABLE: [Effect; EFFECTS.len()] = EFFECTS;
     &TABLE
+}
+
+/// The base equation that reads with an effect as `base` reads without it, where there is one.
+pub fn exchanged(
+    effect: &Effect,
+    base: &Base,
+    run: &Circumstances,
+    values: &[f64],
+) -> Option<Base> {
+    (effect.id == run_mislabelled::EFFECT.id).then(|| run_mislabelled::exchanged(base, run, values))
 }

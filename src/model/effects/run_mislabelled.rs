@@ -1,6 +1,9 @@
 //! One run carries the label of another: its Froude number, condition or unit is wrong.
 
-use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, one_node};
+use crate::model::Base;
+use crate::model::effect::{
+    Acts, Circumstances, Effect, Instant, Layer, Parameter, Scope, one_node,
+};
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -14,7 +17,7 @@ pub(super) const EFFECT: Effect = Effect {
     shapes: &[],
     nodes: one_node,
     scope: Scope::Run,
-    shows: |run| run.n_runs >= 5,
+    shows: |run| run.n_runs >= 4,
     acts: Acts::Moment(law),
     always_equivalent: &[],
     reference: "the seed paper itself: Table 2",
@@ -23,4 +26,14 @@ pub(super) const EFFECT: Effect = Effect {
 fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
     let w = i.run.natural_rad_s;
     -p[0] * i.run.b1_per_s * i.rate_rad_per_s - p[1] * w * w * i.roll_rad
+}
+
+/// The base equation that reads with this effect as `base` reads without.
+pub(super) fn exchanged(base: &Base, run: &Circumstances, p: &[f64]) -> Base {
+    let stiffness = base.natural_rad_s.powi(2) - p[1] * run.natural_rad_s.powi(2);
+    Base {
+        natural_rad_s: stiffness.max(0.0).sqrt(),
+        b1_per_s: base.b1_per_s - p[0] * run.b1_per_s,
+        ..*base
+    }
 }

@@ -1,7 +1,7 @@
 //! The carriage shakes the model at speed.
 
 use crate::model::effect::{
-    Acts, Effect, Facts, Layer, Parameter, Scope, Seen, one_node, under_way,
+    Acts, Effect, Facts, Layer, Parameter, Recurs, Scope, Seen, one_node, under_way,
 };
 
 /// The effect.
@@ -26,5 +26,6 @@ pub(super) const EFFECT: Effect = Effect {
 fn seen(facts: &Facts) -> Option<Seen> {
     let line = facts.line.filter(|_| facts.froude > 0.01)?;
     let values = vec![(line.amplitude_rad, line.amplitude_sd_rad), (line.frequency_hz, 0.05)];
-    Some(Seen { log_bayes_factor: line.log_bayes_factor, values })
+    let recurs = Some(Recurs::PerFroude(line.frequency_hz / facts.froude));
+    Some(Seen { log_bayes_factor: line.log_bayes_factor, values, recurs })
 }

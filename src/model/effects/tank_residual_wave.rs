@@ -1,6 +1,6 @@
 //! Waves of an earlier run still press on the model.
 
-use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, decays, each};
+use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, any_run, each};
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -17,7 +17,7 @@ pub(super) const EFFECT: Effect = Effect {
         each(&shares.map(|share| share * run.natural_rad_s))
     },
     scope: Scope::Run,
-    shows: decays,
+    shows: any_run,
     acts: Acts::Moment(law),
     always_equivalent: &[],
     reference: "ITTC 7.5-02-07-02.1: waiting time",

@@ -1,4 +1,4 @@
-//! Waves that the model made come back from the tank walls.
+//! Waves that the model made come back from the tank walls, the long ones first.
 
 use crate::model::effect::{Acts, Circumstances, Effect, Instant, Layer, Parameter, Scope, each};
 
@@ -6,42 +6,84 @@ use crate::model::effect::{Acts, Circumstances, Effect, Instant, Layer, Paramete
 pub(super) const EFFECT: Effect = Effect {
     id: "tank.wall_reflection",
     layer: Layer::Tank,
-    equation: "r1 phi'(t - td) + r2 w phi(t - td)",
+    equation: "(1 - w V/(0.305 g)) (r1 Re E + r2 Im E), E = phi' through exp(-i w^2 D/g)",
     strengths: &[
         Parameter::new("r1", "1/s", 0.1, [-1.0, 1.0]),
         Parameter::new("r2", "1/s", 0.1, [-1.0, 1.0]),
     ],
-    shapes: &[Parameter::new("td", "s", 0.3, [3.0, 60.0])],
+    shapes: &[Parameter::new("td", "s", 1.0, [3.0, 60.0])],
     nodes: delays,
     scope: Scope::Campaign,
     shows: in_reach,
     acts: Acts::Moment(law),
     always_equivalent: &[],
-    reference: "ITTC 7.5-02-07-02.1: tank interference",
+    reference: "ITTC 7.5-02-07-02.1: tank interference; deep-water dispersion",
 };
 
 /// Waves of the model reach its sides again only below this `w V/g` [-].
 const LIMIT: f64 = 0.305;
 
-fn in_reach(run: &Circumstances) -> bool {
-    run.rolling_rad_s * run.speed_m_s / run.gravity_m_s2 < LIMIT
+/// `w V/g` over its limit.
+fn outrun(run: &Circumstances) -> f64 {
+    run.rolling_rad_s * run.speed_m_s / run.gravity_m_s2 / LIMIT
 }
 
-/// Round trip at the group velocity `g/(2 w)` in deep water.
+fn in_reach(run: &Circumstances) -> bool {
+    outrun(run) < 1.0
+}
+
+/// Round trips at the group velocity `g/(2 w)` in deep water, as far apart as an echo is wide.
 fn delays(run: &Circumstances) -> Vec<Vec<f64>> {
     match run.clear_width_m {
         Some(width_m) => {
             let trip_s = width_m * 2.0 * run.natural_rad_s / run.gravity_m_s2;
-            let half_period_s = std::f64::consts::PI / run.natural_rad_s;
-            let n = (0.7 * trip_s / half_period_s).round().max(1.0) as usize;
-            let node = |k: usize| trip_s * (0.6 + 0.7 * k as f64 / n as f64);
-            each(&(0..=n).map(node).collect::<Vec<_>>())
+            each(&[0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3].map(|share| share * trip_s))
         }
         None => each(&[8.0, 10.0, 12.0, 14.0, 17.0, 20.0]),
     }
 }
 
+/// Taps of the echo on either side of its delay, and their spacing in widths of the chirp.
+const N_SIDE: i32 = 10;
+const SPACING: f64 = 0.24;
+
+/// The echo of the roll rate as a complex number: the integral over the delay `s` of
+/// `sqrt(g/(4 pi D)) exp(i (g s^2/(4 D) - pi/4))` times the rate at `t - s`, with `td = 2 w D/g`;
+/// `w phi` is the rate's other component.
 fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
-    let [roll_rad, rate_rad_per_s] = i.past.at(i.time_s - p[2]);
-    p[0] * rate_rad_per_s + p[1] * i.run.natural_rad_s * roll_rad
+    let (delay_s, w) = (p[2], i.run.natural_rad_s);
+    let width_s = (2.0 * delay_s / w).sqrt();
+    let reach = f64::from(N_SIDE) * SPACING;
+    if i.time_s < delay_s - reach * width_s {
+        return 0.0;
+    }
+    // The phase of the chirp is w s^2/(2 td), so it turns by a growing angle from tap to tap.
+    let step_s = SPACING * width_s;
+    let bend = w * step_s * step_s / delay_s;
+    let first_s = delay_s - reach * width_s;
+    let mut phase = rotation(0.5 * w * first_s * first_s / delay_s);
+    let mut turn = rotation(w * first_s * step_s / delay_s + 0.5 * bend);
+    let more = rotation(bend);
+    let (mut real, mut imaginary) = (0.0, 0.0);
+    for tap in -N_SIDE..=N_SIDE {
+        let at = f64::from(tap) / f64::from(N_SIDE + 1);
+        let [roll_rad, rate] = i.past.at(i.time_s - delay_s - f64::from(tap) * step_s);
+        // A taper: frequencies far from those of the roll are not in the record.
+        let weight = 1.0 - at * at;
+        real += weight * (phase[0] * rate - phase[1] * w * roll_rad);
+        imaginary += weight * (phase[1] * rate + phase[0] * w * roll_rad);
+        phase = times(phase, turn);
+        turn = times(turn, more);
+    }
+    let echo = SPACING / std::f64::consts::PI.sqrt() * (p[0] * real + p[1] * imaginary);
+    (1.0 - outrun(i.run)).max(0.0) * echo
+}
+
+fn rotation(angle: f64) -> [f64; 2] {
+    let (sin, cos) = angle.sin_cos();
+    [cos, sin]
+}
+
+fn times(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
 }
