@@ -9,7 +9,7 @@ use super::settle::{Settled, settle};
 use super::solve::{moved, solve};
 use super::survey::{Fit, N_LAW, Survey};
 use crate::campaign::Tank;
-use crate::model::imposed::N_COURSE;
+use crate::model::course::N_COURSE;
 use crate::run::RunKind;
 
 /// A run worth towing.

@@ -1,6 +1,7 @@
 //! Play of the pin joint: a knock whenever the force changes sign.
 
-use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, forced, one_node};
+use crate::model::effect::{Acts, Effect, Instant, Law, Layer, Parameter, Scope, forced, one_node};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,12 +13,13 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Campaign,
     shows: forced,
-    acts: Acts::Drive(law),
+    acts: Acts::Drive(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "geometry of the rig",
 };
 
-fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     let size = i.run.inertia_kg_m2 * i.run.natural_rad_s.powi(2) * i.run.amplitude_rad;
-    p[0] * size * i.rate_rad_per_s.signum() * (-(i.moment_n_m / (0.03 * size)).powi(2)).exp()
+    let side = i.rate_rad_per_s.value().signum();
+    p[0] * (-(i.moment_n_m / (0.03 * size)).powi(2)).exp() * (side * size)
 }

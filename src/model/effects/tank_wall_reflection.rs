@@ -1,6 +1,9 @@
 //! Waves that the model made come back from the tank walls.
 
-use crate::model::effect::{Acts, Circumstances, Effect, Instant, Layer, Parameter, Scope, each};
+use crate::model::effect::{
+    Acts, Circumstances, Effect, Instant, Law, Layer, Parameter, Scope, each,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -15,7 +18,7 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: delays,
     scope: Scope::Campaign,
     shows: in_reach,
-    acts: Acts::Moment(law),
+    acts: Acts::Echo(Law { plain: law, sloped: law }, 2),
     always_equivalent: &[],
     reference: "ITTC 7.5-02-07-02.1: tank interference",
 };
@@ -41,7 +44,7 @@ fn delays(run: &Circumstances) -> Vec<Vec<f64>> {
     }
 }
 
-fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
-    let [roll_rad, rate_rad_per_s] = i.past.at(i.time_s - p[2]);
-    p[0] * rate_rad_per_s + p[1] * i.run.natural_rad_s * roll_rad
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    let [roll_rad, rate_rad_per_s] = i.ago(p[2]);
+    p[0] * rate_rad_per_s + p[1] * roll_rad * i.run.natural_rad_s
 }
