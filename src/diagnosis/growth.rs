@@ -1,11 +1,11 @@
 //! The model grows by one effect at a time until nothing more is to be named.
 
 use super::alike::{SAME, SAME_SHARE, contains, explained, is_approximate, is_same};
+use super::layout::Layout;
 use super::leftover::{self, Leftover};
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score};
 use super::settle::{Settled, settle};
-use super::solve::Layout;
 use super::survey::{Extension, Fit, Survey};
 
 /// Least logarithm of a Bayes factor at which an effect may enter: one in a thousand by chance.

@@ -1,6 +1,6 @@
 //! One run under a model: what its channels should read, and what each number does to them.
 
-use super::elimination::{Eliminated, Products};
+use super::elimination::{Eliminated, Place, Products, Side, product};
 use super::observation::Observation;
 use crate::model::course::{Course, N_COURSE};
 use crate::model::free::Decay;
@@ -78,28 +78,28 @@ pub(super) fn residual(run: &Observation, predicted: &[f64]) -> Vec<f64> {
 }
 
 /// Divides by the noise and takes out its memory, channel by channel.
-pub(super) fn whiten(run: &Observation, noise: &ChannelNoise, values: &[f64]) -> Vec<f64> {
-    let n_roll = run.roll_rad.len();
-    let mut white = Vec::with_capacity(values.len());
-    for (channel, part) in [&values[..n_roll], &values[n_roll..]].into_iter().enumerate() {
+fn whiten(run: &Observation, noise: &ChannelNoise, values: &mut [f64]) {
+    let (roll, moment) = values.split_at_mut(run.roll_rad.len());
+    for (channel, part) in [roll, moment].into_iter().enumerate() {
         let (sd, rho) = (noise.sd[channel], noise.correlation[channel]);
-        let innovation = sd * (1.0 - rho * rho).sqrt();
-        for i in 0..part.len() {
-            let value =
-                if i == 0 { part[0] / sd } else { (part[i] - rho * part[i - 1]) / innovation };
-            white.push(value);
+        let innovation = (sd * (1.0 - rho * rho).sqrt()).recip();
+        let remembered = rho * innovation;
+        for i in (1..part.len()).rev() {
+            part[i] = innovation * part[i] - remembered * part[i - 1];
+        }
+        if let Some(first) = part.first_mut() {
+            *first /= sd;
         }
     }
-    white
 }
 
 /// Inner products of what the numbers do, the run's own ones eliminated.
 #[derive(Debug, Clone)]
 pub(super) struct Summary {
-    /// Own numbers eliminated: base, parameters of the terms, candidates, record.
+    /// Own numbers eliminated: base, parameters of the terms, record.
     pub(super) eliminated: Eliminated,
-    /// Number of candidate columns.
-    pub(super) n_candidates: usize,
+    /// The strengths of each candidate beside these.
+    pub(super) candidates: Vec<Side>,
     /// What the run's own numbers would gain in misfit alone.
     pub(super) own_gain: f64,
 }
@@ -117,10 +117,9 @@ impl Summary {
     pub(super) fn refer_back(&mut self, moved_by: &[f64]) {
         let rest = &self.eliminated.rest;
         let last = rest.n() - 1;
-        let mut places: Vec<Vec<(usize, f64)>> = (0..=last).map(|i| vec![(i, 1.0)]).collect();
-        for (place, by) in places[N_BASE..].iter_mut().zip(moved_by) {
-            place.push((last, *by));
-        }
+        let mut places: Vec<Place> = (0..=last).map(|i| Place::new(i, i)).collect();
+        let moved = moved_by.iter().enumerate();
+        places.extend(moved.map(|(k, by)| Place { theirs: N_BASE + k, ours: last, by: *by }));
         let mut referred = Products::zero(last + 1);
         referred.gather(rest, &places);
         self.eliminated.rest = referred;
@@ -147,10 +146,12 @@ pub(super) fn summarise(
     let mut left = residual(run, &here);
     left[..n_roll].iter_mut().for_each(|left| *left -= offset);
     changes.insert(n_own - 1, of_offset);
-    changes.push(left);
-    let columns: Vec<Vec<f64>> = changes.iter().map(|c| whiten(run, noise, c)).collect();
-    let n_candidates = candidates.iter().map(|c| c.effect.strengths.len()).sum();
-    let mut products = Products::of(&columns);
+    let n_candidates: usize = candidates.iter().map(|c| c.effect.strengths.len()).sum();
+    let n_known = changes.len() - n_candidates;
+    changes.insert(n_known, left);
+    changes.iter_mut().for_each(|column| whiten(run, noise, column));
+    let (known, tried) = changes.split_at(n_known + 1);
+    let mut products = Products::of(known);
     // The offset's prior is one more reading of it.
     let last = products.n() - 1;
     let precision = OFFSET_SD_RAD.powi(-2);
@@ -160,7 +161,14 @@ pub(super) fn summarise(
     let before = products.at(last, last);
     let eliminated = products.eliminate(n_own);
     let own_gain = before - eliminated.rest.at(last - n_own, last - n_own);
-    Summary { eliminated, n_candidates, own_gain }
+    let mut next = 0;
+    let candidates = candidates.iter().map(|candidate| {
+        let first = next;
+        next += candidate.effect.strengths.len();
+        eliminated.beside(&Side::of(&tried[first..next], known))
+    });
+    let candidates = candidates.collect();
+    Summary { eliminated, candidates, own_gain }
 }
 
 /// Twice the negative logarithm of the likelihood, noise given, up to a constant.
@@ -170,8 +178,8 @@ pub(super) fn misfit(
     terms: &[Term],
     noise: &ChannelNoise,
 ) -> f64 {
-    let left = residual(run, &predict(run, state, terms));
+    let mut left = residual(run, &predict(run, state, terms));
     let offset = state.own[state.own.len() - 1] / OFFSET_SD_RAD;
-    let white: f64 = whiten(run, noise, &left).iter().map(|r| r * r).sum();
-    white + offset * offset
+    whiten(run, noise, &mut left);
+    product(&left, &left) + offset * offset
 }
