@@ -1,6 +1,7 @@
 //! The model grows by one effect at a time until nothing more is to be named.
 
 use super::alike::{SAME, SAME_SHARE, contains, explained, is_approximate, is_same};
+use super::cores;
 use super::layout::Layout;
 use super::leftover::{self, Leftover};
 use super::run_fit::ChannelNoise;
@@ -162,7 +163,11 @@ fn winner(
 ) -> Option<(Settled, Entered)> {
     let best = plausible.first()?;
     let log_bayes_factor = best.settled.log_evidence - current.log_evidence;
-    if log_bayes_factor < ENTERS || !explains_enough(survey, &current.fit, &best.settled.fit) {
+    if log_bayes_factor < ENTERS {
+        return None;
+    }
+    let after = leftovers(survey, &best.settled.fit);
+    if !explains_enough(&leftovers(survey, &current.fit), &after) {
         return None;
     }
     let explained = explained(survey, current, &best.settled);
@@ -171,7 +176,7 @@ fn winner(
     if crumbs.map(|entered| SAME_SHARE * entered.explained).any(|crumb| explained < crumb) {
         return None;
     }
-    let left = excess(&leftovers(survey, &best.settled.fit));
+    let left = excess(&after);
     let equivalent_to = plausible[1..]
         .iter()
         .filter(|one| !contains(one.id, best.id))
@@ -226,12 +231,11 @@ fn simpler(
 
 /// Whether an effect takes its part of what is left for sure: what removes a little of a large
 /// remainder is not its cause, whatever its odds.
-fn explains_enough(survey: &Survey, before: &Fit, after: &Fit) -> bool {
-    let (before, after) = (leftovers(survey, before), leftovers(survey, after));
+fn explains_enough(before: &[Leftover], after: &[Leftover]) -> bool {
     if !before.iter().any(Leftover::is_sure) {
         return true;
     }
-    excess(&before) - excess(&after) > ENOUGH * excess(&before)
+    excess(before) - excess(after) > ENOUGH * excess(before)
 }
 
 /// What is left beyond the noise, in units of its variance.
@@ -241,8 +245,11 @@ pub(super) fn excess(all: &[Leftover]) -> f64 {
 
 /// What a fit leaves of every channel of every run.
 pub(super) fn leftovers(survey: &Survey, fit: &Fit) -> Vec<Leftover> {
-    let residuals = survey.residuals(fit);
-    survey.runs.iter().zip(&residuals).flat_map(|(run, left)| leftover::of(run, left)).collect()
+    survey
+        .each_run(&|run| leftover::of(&survey.runs[run], &survey.residual(fit, run)))
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// Takes each effect out again: one that is missed too little leaves, and what could stand in its
@@ -333,13 +340,11 @@ fn fit_all(
     scores: &[Scored],
     noise: &[ChannelNoise],
 ) -> Vec<Tried> {
-    scores
-        .iter()
-        .map(|scored| {
-            let settled = settle(survey, with(&current.fit, scored.extension.clone()), noise);
-            Tried { settled, id: scored.extension.effect.id }
-        })
-        .collect()
+    cores::each(scores.len(), |k| {
+        let extension = scores[k].extension.clone();
+        let id = extension.effect.id;
+        Tried { settled: settle(survey, with(&current.fit, extension), noise), id }
+    })
 }
 
 /// The model with one more effect, its strengths brought into their range.

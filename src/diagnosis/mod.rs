@@ -7,6 +7,7 @@
 
 mod alike;
 mod clipping;
+mod cores;
 mod elimination;
 mod facts;
 mod gain;
@@ -21,6 +22,7 @@ mod scatter;
 mod score;
 mod settle;
 mod solve;
+mod spectrum;
 mod survey;
 mod verdict;
 

@@ -2,9 +2,10 @@
 
 use super::elimination::{Eliminated, Place, Products, Side};
 use super::layout::Layout;
-use super::run_fit::Summary;
+use super::run_fit::{RunState, Summary};
 use super::scatter::{Scatter, deviation, scatters, spread};
-use super::survey::{Fit, N_LAW, Survey};
+use super::survey::{Extension, Fit, N_LAW, Survey};
+use crate::model::Term;
 
 const LOG_SCALE_SD: f64 = 0.03;
 /// Prior standard deviation of `bk` as a multiple of `b0`: kappa of the seed paper is 12.
@@ -18,6 +19,44 @@ pub(super) struct Marginal {
     /// What is left are base, terms, record.
     pub(super) eliminated: Eliminated,
     log_occam: f64,
+}
+
+/// A run's deviation from its law, then base, terms, record.
+fn deviating(survey: &Survey, fit: &Fit, run: usize, summary: &Summary) -> Products {
+    let own = &summary.eliminated.rest;
+    let n = own.n() + N_DEVIATIONS;
+    let mut products = Products::zero(n);
+    products.gather(own, &deviating_places(survey, fit, run, n));
+    products
+}
+
+/// Base, terms and record stay; a change of the base is a deviation, and stands where it does now.
+fn deviating_places(survey: &Survey, fit: &Fit, run: usize, n: usize) -> Vec<Place> {
+    let mut places: Vec<Place> =
+        (0..n - N_DEVIATIONS).map(|i| Place::new(i, N_DEVIATIONS + i)).collect();
+    for (i, now) in deviation(survey, fit, run).into_iter().enumerate() {
+        places.push(Place::new(i, i));
+        places.push(Place { theirs: i, ours: n - 1, by: now });
+    }
+    places
+}
+
+/// Eliminates a run's deviation from its law.
+fn marginal(
+    survey: &Survey,
+    fit: &Fit,
+    run: usize,
+    mut products: Products,
+    scatter: &Scatter,
+) -> Marginal {
+    let mut log_precision = 0.0;
+    for (i, sd) in spread(survey, fit, run, scatter).into_iter().enumerate() {
+        products.add(i, i, sd.powi(-2));
+        log_precision -= 2.0 * sd.ln();
+    }
+    let eliminated = products.eliminate(N_DEVIATIONS);
+    let log_occam = -0.5 * (eliminated.log_determinant - log_precision);
+    Marginal { eliminated, log_occam }
 }
 
 /// The runs about where a fit stands, ready to be solved for one scatter after the other.
@@ -35,65 +74,38 @@ impl<'a> Joint<'a> {
     pub(super) fn new(survey: &'a Survey, fit: &'a Fit, summaries: &[Summary]) -> Self {
         let layout = Layout::new(survey, fit);
         let places = (0..survey.runs.len()).map(|run| layout.places(survey, fit, run)).collect();
-        let deviating = summaries
-            .iter()
-            .enumerate()
-            .map(|(run, summary)| {
-                let own = &summary.eliminated.rest;
-                let (n, now) = (own.n(), deviation(survey, fit, run));
-                let mut places: Vec<Place> =
-                    (0..n).map(|i| Place::new(i, N_DEVIATIONS + i)).collect();
-                for (i, now) in now.into_iter().enumerate() {
-                    places.push(Place::new(i, i));
-                    places.push(Place { theirs: i, ours: n + 2, by: now });
-                }
-                let mut products = Products::zero(n + N_DEVIATIONS);
-                products.gather(own, &places);
-                products
-            })
-            .collect();
+        let each = summaries.iter().enumerate();
+        let deviating = each.map(|(run, summary)| deviating(survey, fit, run, summary)).collect();
         let mut priors = Products::zero(layout.n + 1);
         add_priors(survey, fit, &layout, &mut priors);
         Self { survey, fit, layout, places, deviating, priors }
     }
 
-    /// Eliminates a run's deviation from its law.
-    fn marginal(&self, run: usize, scatter: &Scatter) -> Marginal {
-        let mut products = self.deviating[run].clone();
-        let mut log_precision = 0.0;
-        for (i, sd) in spread(self.survey, self.fit, run, scatter).into_iter().enumerate() {
-            products.add(i, i, sd.powi(-2));
-            log_precision -= 2.0 * sd.ln();
-        }
-        let eliminated = products.eliminate(N_DEVIATIONS);
-        let log_occam = -0.5 * (eliminated.log_determinant - log_precision);
-        Marginal { eliminated, log_occam }
-    }
-
     /// A candidate of a run beside its deviation from the law, base, terms and record.
     pub(super) fn deviating_side(&self, run: usize, candidate: &Side) -> Side {
-        let (n, m) = (self.deviating[run].n(), candidate.among.n());
-        let mut side = Side::zero(m, n);
-        let now = deviation(self.survey, self.fit, run);
-        let mut places: Vec<Place> =
-            (0..n - N_DEVIATIONS).map(|i| Place::new(i, N_DEVIATIONS + i)).collect();
-        for (i, now) in now.into_iter().enumerate() {
-            places.push(Place::new(i, i));
-            places.push(Place { theirs: i, ours: n - 1, by: now });
-        }
-        side.gather(candidate, 0, &places);
+        let n = self.deviating[run].n();
+        let mut side = Side::zero(candidate.among.n(), n);
+        side.gather(candidate, 0, &deviating_places(self.survey, self.fit, run, n));
         side
+    }
+
+    /// Every run with its scatter eliminated, and the products of all of them with the priors.
+    pub(super) fn gathered(&self, scatter: &Scatter) -> (Vec<Marginal>, Products) {
+        let each = self.deviating.iter().enumerate();
+        let marginals: Vec<Marginal> = each
+            .map(|(run, own)| marginal(self.survey, self.fit, run, own.clone(), scatter))
+            .collect();
+        let mut all = self.priors.clone();
+        for (marginal, places) in marginals.iter().zip(&self.places) {
+            all.gather(&marginal.eliminated.rest, places);
+        }
+        (marginals, all)
     }
 
     /// Solves for one scatter.
     pub(super) fn solve(&self, scatter: Scatter) -> Solution {
         let fit = self.fit;
-        let marginals: Vec<Marginal> =
-            (0..self.deviating.len()).map(|run| self.marginal(run, &scatter)).collect();
-        let mut all = self.priors.clone();
-        for (marginal, places) in marginals.iter().zip(&self.places) {
-            all.gather(&marginal.eliminated.rest, places);
-        }
+        let (marginals, all) = self.gathered(&scatter);
         let misfit_here = all.at(self.layout.n, self.layout.n);
         let eliminated = all.eliminate(self.layout.n);
         let least_misfit = eliminated.rest.at(0, 0);
@@ -228,7 +240,19 @@ pub(super) fn moved(
         law.numbers.iter_mut().enumerate().for_each(|(k, number)| *number += steps[N_LAW * c + k]);
     }
     next.log_scale += steps[layout.scale()];
-    for (e, extension) in next.extensions.iter_mut().enumerate() {
+    next.extensions = moved_extensions(fit, &layout, &steps);
+    for (run, (summary, marginal)) in summaries.iter().zip(&solution.marginals).enumerate() {
+        let local = Layout::local(&layout.places(survey, fit, run), &solution.steps);
+        next.states[run] = moved_state(survey, fit, run, summary, marginal, &local, share);
+        next.states[run].base.log_scale = next.log_scale;
+    }
+    next
+}
+
+/// The parameters of the effects after a step.
+fn moved_extensions(fit: &Fit, layout: &Layout, steps: &[f64]) -> Vec<Extension> {
+    let mut extensions = fit.extensions.clone();
+    for (e, extension) in extensions.iter_mut().enumerate() {
         for (s, values) in extension.slots.iter_mut().enumerate() {
             for (k, value) in values.iter_mut().enumerate() {
                 let [low, high] = extension.effect.parameter(k).range;
@@ -238,23 +262,84 @@ pub(super) fn moved(
             }
         }
     }
-    for (run, summary) in summaries.iter().enumerate() {
-        let local = Layout::local(&layout.places(survey, fit, run), &solution.steps);
-        let deviates = solution.marginals[run].eliminated.back(&local);
-        let now = deviation(survey, fit, run);
-        let mut whole = local.clone();
-        for i in 0..3 {
-            whole[i] += deviates[i] - now[i];
-        }
-        let own = summary.eliminated.back(&whole);
-        let state = &mut next.states[run];
-        state.own.iter_mut().zip(&own).for_each(|(number, step)| *number += share * step);
-        state.base.natural_rad_s += share * whole[0];
-        state.base.b1_per_s += share * whole[1];
-        state.base.b3_s += share * whole[2];
-        state.base.log_scale = next.log_scale;
+    extensions
+}
+
+/// Where a run stands after a share of what steps of the campaign's numbers are to it.
+fn moved_state(
+    survey: &Survey,
+    fit: &Fit,
+    run: usize,
+    summary: &Summary,
+    marginal: &Marginal,
+    local: &[f64],
+    share: f64,
+) -> RunState {
+    let deviates = marginal.eliminated.back(local);
+    let now = deviation(survey, fit, run);
+    let mut whole = local.to_vec();
+    for i in 0..N_DEVIATIONS {
+        whole[i] += deviates[i] - now[i];
     }
-    next
+    let own = summary.eliminated.back(&whole);
+    let mut state = fit.states[run].clone();
+    state.own.iter_mut().zip(&own).for_each(|(number, step)| *number += share * step);
+    state.base.natural_rad_s += share * whole[0];
+    state.base.b1_per_s += share * whole[1];
+    state.base.b3_s += share * whole[2];
+    state
+}
+
+/// A campaign solved with one more run, the last, whose readings alone are new.
+pub(super) struct OneMore {
+    /// The campaign's numbers eliminated.
+    pub(super) eliminated: Eliminated,
+    marginal: Marginal,
+    layout: Layout,
+    local: Vec<f64>,
+    steps: Vec<f64>,
+}
+
+impl OneMore {
+    /// Adds the last run of a survey to what the others gave.
+    pub(super) fn new(
+        others: &Products,
+        survey: &Survey,
+        fit: &Fit,
+        summary: &Summary,
+        scatter: &Scatter,
+    ) -> Self {
+        let (run, layout) = (survey.runs.len() - 1, Layout::new(survey, fit));
+        let own = deviating(survey, fit, run, summary);
+        let marginal = marginal(survey, fit, run, own, scatter);
+        let places = layout.places(survey, fit, run);
+        let mut all = others.clone();
+        all.gather(&marginal.eliminated.rest, &places);
+        let eliminated = all.eliminate(layout.n);
+        let steps = eliminated.back(&[]);
+        let local = Layout::local(&places, &steps);
+        Self { eliminated, marginal, layout, local, steps }
+    }
+
+    /// Least misfit that the linearised model reaches.
+    pub(super) fn least_misfit(&self) -> f64 {
+        self.eliminated.rest.at(0, 0)
+    }
+
+    /// The last run's effects and state after the step.
+    pub(super) fn moved(
+        &self,
+        survey: &Survey,
+        fit: &Fit,
+        summary: &Summary,
+    ) -> (Vec<Term>, RunState) {
+        let run = survey.runs.len() - 1;
+        let extensions = moved_extensions(fit, &self.layout, &self.steps);
+        let (marginal, local) = (&self.marginal, &self.local);
+        let mut state = moved_state(survey, fit, run, summary, marginal, local, 1.0);
+        state.base.log_scale = fit.log_scale + self.steps[self.layout.scale()];
+        (extensions.iter().filter_map(|extension| extension.term(run)).collect(), state)
+    }
 }
 
 impl Solution {

@@ -219,7 +219,7 @@ pub struct LagLaw<P, S> {
     pub sloped: fn(&Instant<'_, Sloped>, &[Sloped], &[Sloped]) -> S,
 }
 
-/// States of an effect that remembers.
+/// States of an effect that remembers; their equation is linear in them and the same all along.
 #[derive(Debug, Clone, Copy)]
 pub struct Lag {
     /// Number of states, at most [`MOST_LAGS`].

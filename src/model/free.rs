@@ -3,8 +3,7 @@
 use super::channel::{self, Tangent};
 use super::effect::{Acts, Circumstances, Instant, MOST_LAGS, Past};
 use super::free_changes::Changes;
-use super::history::{History, Sampling};
-use super::linear::middle;
+use super::history::History;
 use super::term::{Base, Columns, Term};
 
 /// Runge-Kutta steps a period: with the fifth-degree course between, the phase of a roll errs by
@@ -33,7 +32,7 @@ pub struct Decay<'a> {
 pub(super) struct Path<const N: usize> {
     pub(super) step_s: f64,
     pub(super) history: History,
-    /// Roll, rate and what the effects remember, at every step and in the middle between two.
+    /// Roll, rate and what the effects remember, at every step; their number is even.
     pub(super) points: Vec<[f64; N]>,
 }
 
@@ -115,22 +114,17 @@ impl<'a> Decay<'a> {
     fn path<const N: usize>(&self, with_points: bool) -> Path<N> {
         let step_s = std::f64::consts::TAU / (STEPS_PER_PERIOD * self.run.natural_rad_s);
         let last_s = self.time_s.iter().filter_map(|t| t.last()).fold(0.0_f64, |a, b| a.max(*b));
-        let n_steps = (last_s / step_s).ceil().max(1.0) as usize;
+        let n_steps = 2 * (0.5 * last_s / step_s).ceil().max(1.0) as usize;
         let mut history = History::new(step_s, n_steps);
         let mut points: Vec<[f64; N]> = Vec::new();
         let mut state = [0.0; N];
         state[..2].copy_from_slice(&self.start);
-        let mut before: Option<([f64; N], [f64; N])> = None;
         for step in 0..=n_steps {
             let time_s = step as f64 * step_s;
             let first = self.slope(time_s, &state, &history);
             history.push([state[0], state[1], first[1]]);
             if with_points {
-                if let Some((start, from)) = before {
-                    points.push(middle([&start, &state], [&from, &first], step_s));
-                }
                 points.push(state);
-                before = Some((state, first));
             }
             if step == n_steps {
                 break;
@@ -164,12 +158,9 @@ impl<'a> Decay<'a> {
         self.time_s[channel].iter().map(at).collect()
     }
 
-    fn sampling<const N: usize>(&self, path: &Path<N>) -> Sampling {
-        Sampling::new(self.time_s[0], path.step_s, path.history.n_steps())
-    }
-
     fn read<const N: usize>(&self, path: &Path<N>) -> Vec<f64> {
-        let mut readings: Vec<f64> = path.history.rolls(&self.sampling(path)).collect();
+        let mut readings: Vec<f64> =
+            path.history.rolls(&path.history.sampling(self.time_s[0])).collect();
         if channel::is_read_through(self.terms, 0) {
             channel::add(self.terms, 0, &self.instants(0, &path.history), &mut readings);
         }
@@ -185,51 +176,40 @@ impl<'a> Decay<'a> {
         let path = self.path::<N>(true);
         let here = self.read(&path);
         let changes = Changes::new(self, &path, candidates);
-        let histories: Vec<Option<History>> =
-            (0..changes.n_columns()).map(|column| changes.history(column)).collect();
-        let sampling = self.sampling(&path);
         let n_roll = self.time_s[0].len();
-        let mut columns: Vec<Vec<f64>> = histories
-            .iter()
-            .map(|history| {
-                let mut column = Vec::with_capacity(here.len());
-                match history {
-                    Some(history) => column.extend(history.rolls(&sampling)),
-                    None => column.resize(n_roll, 0.0),
-                }
-                column.resize(here.len(), 0.0);
-                column
-            })
-            .collect();
+        let is_through = [0, 1].map(|channel| channel::is_read_through(self.terms, channel));
+        let mut tangents: [Vec<Option<Vec<Tangent>>>; 2] = [Vec::new(), Vec::new()];
+        let mut columns = Vec::with_capacity(changes.n_columns() + 2);
+        let mut change = changes.nothing_yet();
+        let sampling = change.sampling(self.time_s[0]);
+        for number in 0..changes.n_columns() {
+            let moves = changes.fill(number, &mut change);
+            let mut column = Vec::with_capacity(here.len());
+            if moves {
+                column.extend(change.rolls(&sampling));
+            }
+            column.resize(here.len(), 0.0);
+            columns.push(column);
+            for channel in (0..2).filter(|channel| is_through[*channel]) {
+                let motion = |t: &f64| -> Tangent {
+                    let [roll, rate, acceleration] = change.motion(*t);
+                    [roll, rate, acceleration, 0.0]
+                };
+                let all = self.time_s[channel].iter().map(motion);
+                tangents[channel].push(moves.then(|| all.collect()));
+            }
+        }
         for channel in 0..2 {
-            let is_through = channel::is_read_through(self.terms, channel);
-            if !is_through && !channel::is_read_through(candidates, channel) {
+            if !is_through[channel] && !channel::is_read_through(candidates, channel) {
                 continue;
             }
             let instants = self.instants(channel, &path.history);
             let first = if channel == 0 { 0 } else { n_roll };
             channel::add_candidates(candidates, channel, &instants, &mut columns, first);
-            if is_through {
-                let motion = |history: &History, t: f64| -> Tangent {
-                    let [roll, rate, acceleration] = history.motion(t);
-                    [roll, rate, acceleration, 0.0]
-                };
-                let tangents: Vec<Option<Vec<Tangent>>> = histories
-                    .iter()
-                    .map(|history| {
-                        let history = history.as_ref()?;
-                        Some(self.time_s[channel].iter().map(|t| motion(history, *t)).collect())
-                    })
-                    .collect();
-                channel::add_tangents(
-                    self.terms,
-                    N_START,
-                    channel,
-                    &instants,
-                    &tangents,
-                    &mut columns,
-                    first,
-                );
+            if is_through[channel] {
+                let (terms, tangents) = (self.terms, &tangents[channel]);
+                let columns = &mut columns;
+                channel::add_tangents(terms, N_START, channel, &instants, tangents, columns, first);
             }
         }
         Columns { here, columns }

@@ -14,7 +14,7 @@ use super::term::Term;
 /// Frequency, linear and cubic damping: the numbers of the base equation that move a decay.
 const N_MOVING: usize = 3;
 
-/// The equation about a motion, at every step and in the middle between two.
+/// The equation about a motion at every step; two steps of the motion are one of its changes.
 pub(super) struct Changes<const N: usize> {
     step_s: f64,
     jacobians: Vec<Matrix<N>>,
@@ -40,7 +40,7 @@ struct Quotient {
 impl<const N: usize> Changes<N> {
     /// About a path.
     pub(super) fn new(decay: &Decay<'_>, path: &Path<N>, candidates: &[Term]) -> Self {
-        let (half_s, n_points) = (0.5 * path.step_s, path.points.len());
+        let (step_s, n_points) = (path.step_s, path.points.len());
         let n_forced = N_MOVING + decay.terms.iter().map(|term| term.values.len()).sum::<usize>();
         let delays_s: Vec<f64> = decay
             .terms
@@ -56,7 +56,7 @@ impl<const N: usize> Changes<N> {
         let mut quotients = Vec::with_capacity(n_points);
         let at = |k: usize| {
             let state = &path.points[k];
-            decay.instant(half_s * k as f64, [state[0], state[1]], &path.history)
+            decay.instant(step_s * k as f64, [state[0], state[1]], &path.history)
         };
         for (k, state) in path.points.iter().enumerate() {
             let mut about = About {
@@ -70,16 +70,15 @@ impl<const N: usize> Changes<N> {
         let transitions = (0..n_points - 2)
             .step_by(2)
             .map(|k| {
-                Transition::new(&jacobians[k], &jacobians[k + 1], &jacobians[k + 2], path.step_s)
+                Transition::new(&jacobians[k], &jacobians[k + 1], &jacobians[k + 2], 2.0 * step_s)
             })
             .collect();
         let instants: Vec<Instant<'_>> =
             if candidates.is_empty() { Vec::new() } else { (0..n_points).map(at).collect() };
         let candidates = candidates
             .iter()
-            .flat_map(|term| pushes(term, &instants, &quotients, path.step_s))
+            .flat_map(|term| pushes(term, &instants, &quotients, step_s))
             .collect();
-        let step_s = path.step_s;
         Self { step_s, jacobians, transitions, n_forced, forcing, delays_s, echoes, candidates }
     }
 
@@ -88,61 +87,69 @@ impl<const N: usize> Changes<N> {
         N_START + self.n_forced + 1 + self.candidates.len()
     }
 
-    /// Change of the motion with the number of a column; nothing where it does not move.
-    pub(super) fn history(&self, column: usize) -> Option<History> {
+    /// Room for the change of the motion with a number.
+    pub(super) fn nothing_yet(&self) -> History {
+        History::still(2.0 * self.step_s, self.transitions.len())
+    }
+
+    /// Change of the motion with the number of a column; false where it does not move.
+    pub(super) fn fill(&self, column: usize, change: &mut History) -> bool {
         let still = [0.0; N];
         if column < N_START {
             let mut start = still;
             start[column] = 1.0;
-            return Some(self.respond(start, |_| still));
+            self.respond(start, |_| still, change);
+            return true;
         }
-        let first = column - N_START;
         // The moment's scale does not move a decay.
-        let own = match first {
-            N_MOVING => return None,
+        let own = match column - N_START {
+            N_MOVING => return false,
             scaled if scaled > N_MOVING => scaled - 1,
             moving => moving,
         };
         if own < self.n_forced {
             let at = |k: usize| self.forcing[k * self.n_forced + own];
-            let is_moved = (0..self.jacobians.len()).any(|k| at(k).iter().any(|f| *f != 0.0));
-            return is_moved.then(|| self.respond(still, at));
+            let moves = (0..self.jacobians.len()).any(|k| at(k).iter().any(|f| *f != 0.0));
+            if moves {
+                self.respond(still, at, change);
+            }
+            return moves;
         }
-        let push = self.candidates[own - self.n_forced].as_ref()?;
-        Some(self.respond(still, |k| {
+        let Some(push) = self.candidates[own - self.n_forced].as_ref() else { return false };
+        let at = |k: usize| {
             let mut forcing = still;
             forcing[1] = push[k];
             forcing
-        }))
+        };
+        self.respond(still, at, change);
+        true
     }
 
-    fn respond(&self, start: [f64; N], forcing: impl Fn(usize) -> [f64; N]) -> History {
-        let n_steps = self.transitions.len();
-        let mut history = History::new(self.step_s, n_steps);
-        let mut state = start;
-        let at = |point: usize, history: &History| {
+    fn respond(&self, start: [f64; N], forcing: impl Fn(usize) -> [f64; N], change: &mut History) {
+        change.clear();
+        let at = |point: usize, change: &History| {
             let mut forcing = forcing(point);
             for (e, delay_s) in self.delays_s.iter().enumerate() {
-                let time_s = 0.5 * self.step_s * point as f64 - delay_s;
+                let time_s = self.step_s * point as f64 - delay_s;
                 if time_s > 0.0 {
-                    let [roll, rate, _] = history.motion(time_s);
+                    let [roll, rate, _] = change.motion(time_s);
                     let by = self.echoes[point * self.delays_s.len() + e];
                     forcing[1] += by[0] * roll + by[1] * rate;
                 }
             }
             forcing
         };
-        let mut first = at(0, &history);
-        for step in 0..=n_steps {
+        let mut state = start;
+        let mut first = at(0, change);
+        for step in 0..=self.transitions.len() {
             let slope = times(&self.jacobians[2 * step], &state)[1] + first[1];
-            history.push([state[0], state[1], slope]);
-            if step < n_steps {
-                let (middle, last) = (at(2 * step + 1, &history), at(2 * step + 2, &history));
-                state = self.transitions[step].step(&state, [&first, &middle, &last]);
+            change.push([state[0], state[1], slope]);
+            if let Some(transition) = self.transitions.get(step) {
+                let (middle, last) = (at(2 * step + 1, change), at(2 * step + 2, change));
+                state = transition.step(&state, [&first, &middle, &last]);
                 first = last;
             }
         }
-        history
     }
 }
 

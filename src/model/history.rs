@@ -13,9 +13,19 @@ impl History {
         Self { step_s, states: Vec::with_capacity(n_steps + 1) }
     }
 
-    /// Number of steps between what is kept.
-    pub(super) fn n_steps(&self) -> usize {
-        self.states.len() - 1
+    /// So many steps, all at rest.
+    pub(super) fn still(step_s: f64, n_steps: usize) -> Self {
+        Self { step_s, states: vec![[0.0; 3]; n_steps + 1] }
+    }
+
+    /// Starts anew.
+    pub(super) fn clear(&mut self) {
+        self.states.clear();
+    }
+
+    /// Where instants lie between these steps.
+    pub(super) fn sampling(&self, time_s: &[f64]) -> Sampling {
+        Sampling::new(time_s, self.step_s, self.states.len() - 1)
     }
 
     /// Adds one step.
@@ -67,7 +77,7 @@ pub(super) struct Sampling {
 
 impl Sampling {
     /// For `n_steps` steps.
-    pub(super) fn new(time_s: &[f64], step_s: f64, n_steps: usize) -> Self {
+    fn new(time_s: &[f64], step_s: f64, n_steps: usize) -> Self {
         let h = step_s;
         let place = |t: &f64| {
             let place = (t / h).clamp(0.0, n_steps as f64);

@@ -9,7 +9,7 @@ use super::term::{Base, Term};
 
 /// Periods before the start over which effects that remember settle.
 const PERIODS_BEFORE: f64 = 8.0;
-const STEPS_PER_PERIOD: f64 = 48.0;
+const STEPS_PER_PERIOD: f64 = 96.0;
 
 /// One forced run: its equation, its course, and when its channels are read.
 #[derive(Debug, Clone, Copy)]
@@ -26,7 +26,7 @@ pub struct Imposed<'a> {
     pub time_s: [&'a [f64]; 2],
 }
 
-/// Points half a step apart, from well before the start to the last reading.
+/// Points a step apart, from well before the start to the last reading.
 pub(super) struct Points {
     pub(super) from_s: f64,
     pub(super) step_s: f64,
@@ -36,12 +36,12 @@ pub(super) struct Points {
 impl Points {
     /// Time of a point [s].
     pub(super) fn time_s(&self, point: usize) -> f64 {
-        self.from_s + 0.5 * self.step_s * point as f64
+        self.from_s + self.step_s * point as f64
     }
 
     /// Where a time lies between the points.
     pub(super) fn place(&self, time_s: f64) -> f64 {
-        (time_s - self.from_s) / (0.5 * self.step_s)
+        (time_s - self.from_s) / self.step_s
     }
 }
 
@@ -93,7 +93,7 @@ impl<'a> Imposed<'a> {
         let step_s = period_s / STEPS_PER_PERIOD;
         let from_s = -PERIODS_BEFORE * period_s;
         let last_s = self.time_s.iter().filter_map(|t| t.last()).fold(0.0_f64, |a, b| a.max(*b));
-        Points { from_s, step_s, n: 2 * ((last_s - from_s) / step_s).ceil() as usize + 1 }
+        Points { from_s, step_s, n: ((last_s - from_s) / step_s).ceil() as usize + 1 }
     }
 
     /// States of every term that remembers, at every point.

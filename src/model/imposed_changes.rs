@@ -4,8 +4,8 @@ use super::channel::{self, Tangent};
 use super::course::N_COURSE;
 use super::effect::{Acts, Instant, MOST_LAGS};
 use super::imposed::Imposed;
-use super::lagging::follow;
-use super::linear::{Matrix, Transition, between, middle, times};
+use super::lagging::{follow, jacobian};
+use super::linear::{between, driven};
 use super::number::{Sloped, slope};
 use super::slopes;
 use super::term::{Columns, N_BASE, Term};
@@ -126,13 +126,7 @@ impl<'a> Changes<'a> {
                 .zip(states)
                 .map(|(i, states)| slopes::of_lag(&lag, &slopes::inputs(i), values, states).0)
                 .collect();
-            let jacobian = |k: usize| -> [[f64; MOST_LAGS]; MOST_LAGS] {
-                rows[k].map(|row| std::array::from_fn(|j| row.slopes[slope::REMEMBERED + j]))
-            };
-            let transitions: Vec<Transition<MOST_LAGS>> = (0..rows.len() - 2)
-                .step_by(2)
-                .map(|k| Transition::new(&jacobian(k), &jacobian(k + 1), &jacobian(k + 2), step_s))
-                .collect();
+            let jacobian = jacobian(&rows[0]);
             let lagged = (0..self.n_columns).map(|column| {
                 let forcing = |k: usize| -> [f64; MOST_LAGS] {
                     rows[k].map(|row| match column {
@@ -141,7 +135,7 @@ impl<'a> Changes<'a> {
                     })
                 };
                 (column < N_COURSE || own.contains(&column))
-                    .then(|| respond(&transitions, jacobian, forcing, step_s))
+                    .then(|| driven(&jacobian, forcing, rows.len(), step_s))
             });
             all.push(lagged.collect());
         }
@@ -257,30 +251,4 @@ fn along(of: &Sloped, motion: &[f64; 3]) -> f64 {
     of.slopes[slope::ROLL] * motion[0]
         + of.slopes[slope::RATE] * motion[1]
         + of.slopes[slope::ACCELERATION] * motion[2]
-}
-
-/// States under a forcing, at every point.
-fn respond(
-    transitions: &[Transition<MOST_LAGS>],
-    jacobian: impl Fn(usize) -> Matrix<MOST_LAGS>,
-    forcing: impl Fn(usize) -> [f64; MOST_LAGS],
-    step_s: f64,
-) -> Vec<[f64; MOST_LAGS]> {
-    let slope = |k: usize, state: &[f64; MOST_LAGS], forcing: &[f64; MOST_LAGS]| {
-        let free = times(&jacobian(k), state);
-        std::array::from_fn(|i| free[i] + forcing[i])
-    };
-    let mut state = [0.0; MOST_LAGS];
-    let mut states = vec![state];
-    let mut start = forcing(0);
-    let mut from = slope(0, &state, &start);
-    for (step, transition) in transitions.iter().enumerate() {
-        let end = forcing(2 * step + 2);
-        let next = transition.step(&state, [&start, &forcing(2 * step + 1), &end]);
-        let to = slope(2 * step + 2, &next, &end);
-        states.push(middle([&state, &next], [&from, &to], step_s));
-        states.push(next);
-        (state, start, from) = (next, end, to);
-    }
-    states
 }
