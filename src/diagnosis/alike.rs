@@ -1,8 +1,9 @@
 //! Which effects these runs cannot tell apart.
 
 use super::growth::ENTERS;
+use super::scatter::scatters;
 use super::settle::Settled;
-use super::solve::{scatters, solve};
+use super::solve::solve;
 use super::survey::Survey;
 use crate::model::effects;
 use crate::model::{Acts, Layer};

@@ -7,6 +7,21 @@ pub(super) struct Products {
     entries: Vec<f64>,
 }
 
+/// A column of theirs goes to one of ours, times a factor; it may go to several.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub(super) theirs: usize,
+    pub(super) ours: usize,
+    pub(super) by: f64,
+}
+
+impl Place {
+    /// Column `theirs` is our column `ours`.
+    pub(super) fn new(theirs: usize, ours: usize) -> Self {
+        Self { theirs, ours, by: 1.0 }
+    }
+}
+
 /// Share of its own inner product below which nothing of a column is left but rounding.
 const NOTHING_LEFT: f64 = 1e-11;
 
@@ -48,15 +63,11 @@ impl Products {
     }
 
     /// Adds these products with a column of ours for each of theirs, or several with factors.
-    pub(super) fn gather(&mut self, other: &Self, places: &[Vec<(usize, f64)>]) {
-        for (i, rows) in places.iter().enumerate() {
-            for (j, columns) in places.iter().enumerate() {
-                let value = other.at(i, j);
-                for (row, by) in rows {
-                    for (column, times) in columns {
-                        self.entries[row * self.n + column] += by * times * value;
-                    }
-                }
+    pub(super) fn gather(&mut self, other: &Self, places: &[Place]) {
+        for &Place { theirs: i, ours: row, by } in places {
+            let (from, to) = (&other.entries[i * other.n..], row * self.n);
+            for place in places {
+                self.entries[to + place.ours] += by * place.by * from[place.theirs];
             }
         }
     }
@@ -77,6 +88,7 @@ impl Products {
         let n = self.n;
         let whole: Vec<f64> = (0..k).map(|i| self.at(i, i)).collect();
         let mut rows = Vec::with_capacity(k * n);
+        let mut pivots = Vec::with_capacity(k);
         let mut log_determinant = 0.0;
         for (i, whole) in whole.into_iter().enumerate() {
             let pivot = self.at(i, i);
@@ -97,14 +109,15 @@ impl Products {
                 }
             }
             rows.extend(row);
+            pivots.push(if alive { pivot } else { f64::INFINITY });
         }
         let left: Vec<usize> = (k..n).collect();
-        Eliminated { k, n, rows, rest: self.picked(&left), log_determinant }
+        Eliminated { k, n, rows, pivots, rest: self.picked(&left), log_determinant }
     }
 }
 
 /// Inner product in four partial sums, which a processor adds side by side.
-fn product(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (fours, others) = (a.chunks_exact(4), b.chunks_exact(4));
     let rest: f64 = fours.remainder().iter().zip(others.remainder()).map(|(x, y)| x * y).sum();
@@ -123,6 +136,8 @@ pub(super) struct Eliminated {
     n: usize,
     /// Row `i` holds the factors by which column `i` depends on those after it.
     rows: Vec<f64>,
+    /// What was left of each column itself; without end where nothing was.
+    pivots: Vec<f64>,
     /// Products of the other columns less their projections on the eliminated ones.
     pub(super) rest: Products,
     /// Logarithm of the determinant of the eliminated block.
@@ -150,28 +165,90 @@ impl Eliminated {
     }
 
     /// Covariance of the eliminated columns' coefficients, given those after them.
-    pub(super) fn covariance(&self, pivots: &Products) -> Vec<Vec<f64>> {
-        (0..self.k)
-            .map(|column| {
-                let mut products = pivots.picked(&(0..self.k).collect::<Vec<_>>());
-                products = products.with_record(column);
-                products.eliminate(self.k).back(&[])
-            })
-            .collect()
+    pub(super) fn covariance(&self) -> Vec<Vec<f64>> {
+        let of = |column: usize| {
+            // The column that answers to `column` alone, forward and back through the factors.
+            let mut x = vec![0.0; self.k];
+            x[column] = 1.0;
+            for i in column..self.k {
+                let (by, row) = (x[i], &self.rows[i * self.n..]);
+                (i + 1..self.k).for_each(|j| x[j] -= by * row[j]);
+                x[i] = by / self.pivots[i];
+            }
+            for i in (0..self.k).rev() {
+                let row = &self.rows[i * self.n..];
+                x[i] -= (i + 1..self.k).map(|j| row[j] * x[j]).sum::<f64>();
+            }
+            x
+        };
+        (0..self.k).map(of).collect()
+    }
+
+    /// A side without its projections on the eliminated columns.
+    pub(super) fn beside(&self, side: &Side) -> Side {
+        let (mut with, mut among) = (side.with.clone(), side.among.clone());
+        let (n, m) = (self.n, among.n);
+        for i in (0..self.k).filter(|i| self.pivots[*i].is_finite()) {
+            let row = &self.rows[i * n..(i + 1) * n];
+            for c in 0..m {
+                let by = with[c * n + i];
+                for d in 0..m {
+                    among.entries[c * m + d] -= by * with[d * n + i] / self.pivots[i];
+                }
+            }
+            for c in 0..m {
+                let with = &mut with[c * n..(c + 1) * n];
+                let by = with[i];
+                with.iter_mut().zip(row).skip(i + 1).for_each(|(w, factor)| *w -= by * factor);
+            }
+        }
+        let kept = n - self.k;
+        let with = with.chunks_exact(n).flat_map(|with| with[self.k..].iter().copied()).collect();
+        Side { n: kept, with, among }
     }
 }
 
-impl Products {
-    /// The same columns with a record whose product with column `one` is 1 and with others nil.
-    fn with_record(&self, one: usize) -> Self {
-        let mut grown = Self::zero(self.n + 1);
-        for i in 0..self.n {
-            for j in 0..self.n {
-                grown.entries[i * grown.n + j] = self.at(i, j);
+/// Columns beside those of some products: inner products with these, and among themselves.
+#[derive(Debug, Clone)]
+pub(super) struct Side {
+    n: usize,
+    with: Vec<f64>,
+    pub(super) among: Products,
+}
+
+impl Side {
+    /// `m` columns that are all nil, beside `n`.
+    pub(super) fn zero(m: usize, n: usize) -> Self {
+        Self { n, with: vec![0.0; m * n], among: Products::zero(m) }
+    }
+
+    /// Inner products of columns with known ones and among themselves.
+    pub(super) fn of(columns: &[Vec<f64>], known: &[Vec<f64>]) -> Self {
+        let with = columns.iter().flat_map(|c| known.iter().map(|k| product(c, k))).collect();
+        Self { n: known.len(), with, among: Products::of(columns) }
+    }
+
+    /// Inner product of one of the columns with a known one.
+    pub(super) fn with(&self, column: usize, known: usize) -> f64 {
+        self.with[column * self.n + known]
+    }
+
+    /// Adds to such a product.
+    pub(super) fn add(&mut self, column: usize, known: usize, value: f64) {
+        self.with[column * self.n + known] += value;
+    }
+
+    /// Adds a side whose columns are ours from `first` on, and whose known ones have places.
+    pub(super) fn gather(&mut self, other: &Self, first: usize, places: &[Place]) {
+        for c in 0..other.among.n {
+            for place in places {
+                self.add(first + c, place.ours, place.by * other.with(c, place.theirs));
+            }
+            for d in 0..other.among.n {
+                let at = (first + c) * self.among.n + first + d;
+                self.among.entries[at] += other.among.at(c, d);
             }
         }
-        grown.add(one, self.n, 1.0);
-        grown
     }
 }
 
@@ -189,8 +266,25 @@ mod tests {
         // The straight line through 1, 3, 5, 8 is 0.8 + 2.3 t and leaves 0.3.
         assert!((x[0] - 0.8).abs() < 1e-12 && (x[1] - 2.3).abs() < 1e-12, "{x:?}");
         assert!((eliminated.rest.at(0, 0) - 0.3).abs() < 1e-12);
-        let covariance = eliminated.covariance(&products);
+        let covariance = eliminated.covariance();
         assert!((covariance[1][1] - 0.2).abs() < 1e-12, "{covariance:?}");
         assert!((eliminated.log_determinant - 20_f64.ln()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_side_is_eliminated_as_if_it_had_been_among_the_columns() {
+        let column = |seed: u32| -> Vec<f64> {
+            (0..9).map(|i| f64::from((seed * 7 + i * i * (3 + seed)) % 11)).collect()
+        };
+        let (known, more) = ([column(1), column(2), column(3)], [column(4), column(5)]);
+        let all: Vec<Vec<f64>> = known.iter().chain(&more).cloned().collect();
+        let whole = Products::of(&all).eliminate(2).rest;
+        let side = Products::of(&known).eliminate(2).beside(&Side::of(&more, &known));
+        for c in 0..2 {
+            assert!((side.with(c, 0) - whole.at(0, 1 + c)).abs() < 1e-9);
+            for d in 0..2 {
+                assert!((side.among.at(c, d) - whole.at(1 + c, 1 + d)).abs() < 1e-9);
+            }
+        }
     }
 }

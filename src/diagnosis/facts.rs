@@ -1,6 +1,6 @@
 //! What a record shows without any model: its noise, its steps, lines in it.
 
-use super::clipping;
+use super::{clipping, spectrum};
 use crate::model::{Facts, Line};
 use crate::run::Series;
 
@@ -49,9 +49,11 @@ fn line(values: &[f64], rate_hz: f64, lowest_hz: f64) -> Option<Line> {
         .map(|(i, d)| d * (std::f64::consts::PI * (i as f64 + 0.5) / n as f64).sin().powi(2))
         .collect();
     let first = (lowest_hz * n as f64 / rate_hz).ceil() as usize;
-    let powers: Vec<f64> = (first..=n / 2)
-        .map(|bin| power(&windowed, std::f64::consts::TAU * bin as f64 / n as f64))
-        .collect();
+    let angle = |bin: usize| std::f64::consts::TAU * bin as f64 / n as f64;
+    let angles: Vec<f64> = (first..=n / 2).map(angle).collect();
+    // Less what fourth differences make of it.
+    let seen = spectrum::powers(&windowed, &angles).into_iter().zip(&angles);
+    let powers: Vec<f64> = seen.map(|(power, a)| power / (2.0 * (0.5 * a).sin()).powi(8)).collect();
     if powers.len() < 32 {
         return None;
     }
@@ -71,17 +73,4 @@ fn line(values: &[f64], rate_hz: f64, lowest_hz: f64) -> Option<Line> {
     let amplitude_sd_rad = noise_sd * (2.0 / n as f64).sqrt();
     let frequency_hz = (first + best) as f64 * rate_hz / n as f64;
     Some(Line { frequency_hz, amplitude_rad, amplitude_sd_rad, log_bayes_factor })
-}
-
-/// Power at an angle per sample, less what fourth differences make of it.
-fn power(values: &[f64], angle: f64) -> f64 {
-    let (sin, cos) = angle.sin_cos();
-    let (mut c, mut s) = (1.0, 0.0);
-    let (mut re, mut im) = (0.0, 0.0);
-    for value in values {
-        re += value * c;
-        im += value * s;
-        (c, s) = (c * cos - s * sin, s * cos + c * sin);
-    }
-    (re * re + im * im) / (2.0 * (0.5 * angle).sin()).powi(8)
 }

@@ -1,11 +1,12 @@
 //! The model grows by one effect at a time until nothing more is to be named.
 
 use super::alike::{SAME, contains, explained, is_approximate, is_same};
+use super::cores;
+use super::layout::Layout;
 use super::leftover::{self, Leftover};
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score};
 use super::settle::{Settled, settle};
-use super::solve::Layout;
 use super::survey::{Extension, Fit, Survey};
 use crate::model::effects;
 
@@ -183,12 +184,16 @@ fn winner(
 ) -> Option<(Settled, Entered)> {
     let best = plausible.first()?;
     let log_bayes_factor = best.settled.log_evidence - current.log_evidence;
-    if log_bayes_factor < ENTERS || !explains_enough(survey, &current.fit, &best.settled.fit) {
+    if log_bayes_factor < ENTERS {
+        return None;
+    }
+    let (before, after) = (leftovers(survey, &current.fit), leftovers(survey, &best.settled.fit));
+    if !explains_enough(&before, &after) {
         return None;
     }
     let explained = explained(survey, current, &best.settled);
-    let left = excess(&leftovers(survey, &best.settled.fit));
-    let removed = excess(&leftovers(survey, &current.fit)) - left;
+    let left = excess(&after);
+    let removed = excess(&before) - left;
     // What an approximate effect leaves of itself is no other effect.
     let crumbs = known.iter().filter(|entered| is_approximate(entered.id));
     if crumbs.map(|entered| CRUMB * entered.removed).any(|crumb| removed < crumb) {
@@ -248,18 +253,17 @@ fn simpler(
 
 /// Whether an effect takes its part of what is left for sure: what removes a little of a large
 /// remainder is not its cause, whatever its odds.
-fn explains_enough(survey: &Survey, before: &Fit, after: &Fit) -> bool {
-    let (before, after) = (leftovers(survey, before), leftovers(survey, after));
+fn explains_enough(before: &[Leftover], after: &[Leftover]) -> bool {
     if !before.iter().any(Leftover::is_sure) {
         return true;
     }
     // A ringing above the frequencies of roll is taken for noise until its cause is known.
-    let sure = before.iter().zip(&after).filter(|(before, _)| before.is_sure());
+    let sure = before.iter().zip(after).filter(|(before, _)| before.is_sure());
     let (n_sure, n_mended) = sure.fold((0, 0), |(all, mended), (before, after)| {
         let is_mended = after.rms.powi(2) < (1.0 - ENOUGH) * before.rms.powi(2);
         (all + 1, mended + usize::from(is_mended))
     });
-    excess(&before) - excess(&after) > ENOUGH * excess(&before) || 2 * n_mended >= n_sure
+    excess(before) - excess(after) > ENOUGH * excess(before) || 2 * n_mended >= n_sure
 }
 
 /// What is left beyond the noise, in units of its variance.
@@ -269,8 +273,11 @@ pub(super) fn excess(all: &[Leftover]) -> f64 {
 
 /// What a fit leaves of every channel of every run.
 pub(super) fn leftovers(survey: &Survey, fit: &Fit) -> Vec<Leftover> {
-    let residuals = survey.residuals(fit);
-    survey.runs.iter().zip(&residuals).flat_map(|(run, left)| leftover::of(run, left)).collect()
+    survey
+        .each_run(&|run| leftover::of(&survey.runs[run], &survey.residual(fit, run)))
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// Takes each effect out again: one that is missed too little leaves, and what could stand in its
@@ -361,14 +368,11 @@ fn fit_all(
     scores: &[Scored],
     noise: &[ChannelNoise],
 ) -> Vec<Tried> {
-    scores
-        .iter()
-        .map(|scored| {
-            let settled =
-                settle(survey, with(survey, &current.fit, scored.extension.clone(), noise), noise);
-            Tried { settled, id: scored.extension.effect.id }
-        })
-        .collect()
+    cores::each(scores.len(), |k| {
+        let extension = scores[k].extension.clone();
+        let id = extension.effect.id;
+        Tried { settled: settle(survey, with(survey, &current.fit, extension, noise), noise), id }
+    })
 }
 
 /// The model with one more effect: with the strengths that the score gives it where they help as

@@ -5,6 +5,7 @@
 //! band as a whole, the strongest single frequency in it, and the strongest single period in time.
 
 use super::observation::Observation;
+use super::spectrum::powers;
 
 /// What is left of one channel of one run.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,23 +75,17 @@ fn channel_leftover(
     let bin_rad_s = std::f64::consts::TAU / (n as f64 * step_s);
     let band_end = ((4.0 * w / bin_rad_s) as usize).clamp(8, n / 3);
     let noise_from = ((6.0 * w / bin_rad_s) as usize).clamp(band_end + 1, n / 2 - 8);
-    let power = |bin: usize| {
-        let angle = std::f64::consts::TAU * bin as f64 / n as f64;
-        let (sin, cos) = angle.sin_cos();
-        let (mut c, mut s, mut re, mut im) = (1.0, 0.0, 0.0, 0.0);
-        for value in left {
-            re += value * c;
-            im += value * s;
-            (c, s) = (c * cos - s * sin, s * cos + c * sin);
-        }
-        (re * re + im * im) / n as f64
+    let angle = |bin: usize| std::f64::consts::TAU * bin as f64 / n as f64;
+    let powers_at = |bins: &mut dyn Iterator<Item = usize>| -> Vec<f64> {
+        let powers = powers(left, &bins.map(angle).collect::<Vec<_>>());
+        powers.into_iter().map(|power| power / n as f64).collect()
     };
     let n_noise = n / 2 - noise_from;
     // A few hundred frequencies know the noise well enough.
     let stride = (n_noise / 300).max(1);
-    let above: Vec<f64> = (noise_from..n / 2).step_by(stride).map(power).collect();
+    let above = powers_at(&mut (noise_from..n / 2).step_by(stride));
     let mean_noise = median(&above) / std::f64::consts::LN_2;
-    let band: Vec<f64> = (1..=band_end).map(power).collect();
+    let band = powers_at(&mut (1..=band_end));
     let (n_band, n_above) = (band.len() as f64, above.len() as f64);
     let sum: f64 = band.iter().sum::<f64>() / mean_noise;
     // A median of n powers is known to 1/sqrt(n) of itself over ln 2.

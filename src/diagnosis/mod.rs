@@ -7,18 +7,22 @@
 
 mod alike;
 mod clipping;
+mod cores;
 mod elimination;
 mod facts;
 mod gain;
 mod growth;
+mod layout;
 mod leftover;
 mod next_run;
 mod observation;
 mod records;
 mod run_fit;
+mod scatter;
 mod score;
 mod settle;
 mod solve;
+mod spectrum;
 mod survey;
 mod unexplained;
 mod verdict;

@@ -1,15 +1,19 @@
 //! Which run would say most: by the expected Bayes factor where causes are undecided, else by what
 //! the law of damping would gain.
 
+use std::sync::Arc;
+
+use super::cores;
+use super::elimination::Products;
 use super::growth::{Grown, leftovers};
 use super::observation::Observation;
-use super::run_fit::{ChannelNoise, RunState, Summary, predict, summarise};
-use super::score::score;
+use super::run_fit::{ChannelNoise, RunState, predict, summarise};
+use super::score::{Scored, score};
 use super::settle::{Settled, settle};
-use super::solve::{moved, solve};
+use super::solve::{Joint, OneMore};
 use super::survey::{Fit, N_LAW, Survey};
 use crate::campaign::Tank;
-use crate::model::imposed::N_COURSE;
+use crate::model::course::N_COURSE;
 use crate::run::RunKind;
 
 /// A run worth towing.
@@ -124,7 +128,7 @@ impl Plan {
         at.order = survey.runs.len();
         let times: Vec<f64> =
             (0..(span_s / SAMPLE_S) as usize).map(|i| i as f64 * SAMPLE_S).collect();
-        let mut run = like.clone();
+        let mut run = Observation::clone(like);
         run.at = at;
         run.moment_time_s = if at.has_moment { times.clone() } else { Vec::new() };
         run.roll_time_s = times;
@@ -168,7 +172,7 @@ fn with_run(survey: &Survey, fit: &Fit, run: &Observation, state: RunState) -> F
 
 fn grown_survey(survey: &Survey, run: Observation) -> Survey {
     let mut runs = survey.runs.clone();
-    runs.push(run);
+    runs.push(Arc::new(run));
     let mut condition_of = survey.condition_of.clone();
     condition_of.push(survey.condition_of[0]);
     Survey { runs, conditions: survey.conditions.clone(), condition_of }
@@ -186,11 +190,29 @@ fn left_in_channels(survey: &Survey, fit: &Fit) -> [f64; 2] {
     })
 }
 
+/// A rival with all that the runs so far say of it.
+struct Rival {
+    settled: Settled,
+    /// The runs so far under its scatter.
+    products: Products,
+    /// What they leave.
+    least_misfit: f64,
+}
+
+impl Rival {
+    fn new(survey: &Survey, settled: Settled) -> Self {
+        let joint = Joint::new(survey, &settled.fit, &settled.summaries);
+        let (_, products) = joint.gathered(&settled.solution.scatter);
+        let least_misfit = settled.solution.least_misfit;
+        Self { settled, products, least_misfit }
+    }
+}
+
 /// Half of the misfit that a rival would keep on a run that the favourite made.
 fn expected(
     survey: &Survey,
     favourite: &Fit,
-    rival: &Settled,
+    rival: &Rival,
     (plan, span_s): &(Plan, f64),
     left: [f64; 2],
 ) -> f64 {
@@ -200,13 +222,14 @@ fn expected(
     let readings = predict(&run, &state, &truth.terms(last));
     let n_roll = run.roll_time_s.len();
     (run.roll_rad, run.moment_n_m) = (readings[..n_roll].to_vec(), readings[n_roll..].to_vec());
-    let law = rival.fit.laws[survey.condition_of[0]].at(plan.froude);
+    let known = &rival.settled.fit;
+    let law = known.laws[survey.condition_of[0]].at(plan.froude);
     let mut guess = state;
     (guess.base.natural_rad_s, guess.base.b1_per_s, guess.base.b3_s) = (law[0], law[1], law[2]);
-    guess.base.log_scale = rival.fit.log_scale;
-    let mut fit = with_run(survey, &rival.fit, &run, guess);
+    guess.base.log_scale = known.log_scale;
+    let mut fit = with_run(survey, known, &run, guess);
     let grown = grown_survey(survey, run);
-    let scatter = rival.solution.scatter;
+    let scatter = rival.settled.solution.scatter;
     let mut least = f64::INFINITY;
     // The rival may answer with all its numbers, as far as the runs so far let it.
     let mut terms = fit.terms(last);
@@ -220,16 +243,11 @@ fn expected(
             })
             .collect();
         summary.refer_back(&moved_by);
-        let mut summaries: Vec<Summary> = rival.summaries.clone();
-        summaries.push(summary);
-        let solution = solve(&grown, &fit, &summaries, scatter);
-        least = least.min(solution.least_misfit);
-        let next = moved(&grown, &fit, &summaries, &solution, 1.0);
-        terms = next.terms(last);
-        fit.states[last] = next.states[last].clone();
+        let solved = OneMore::new(&rival.products, &grown, &fit, &summary, &scatter);
+        least = least.min(solved.least_misfit());
+        (terms, fit.states[last]) = solved.moved(&grown, &fit, &summary);
     }
-    let without = solve(survey, &rival.fit, &rival.summaries, scatter).least_misfit;
-    0.5 * (least - without).max(0.0)
+    0.5 * (least - rival.least_misfit).max(0.0)
 }
 
 /// The run that says most.
@@ -273,28 +291,28 @@ fn parting(
     let mut without = grown.last.fit.clone();
     without.extensions.remove(place);
     let scored = score(survey, &without, &grown.noise);
-    let settled: Vec<Settled> = rivals
+    let scored: Vec<&Scored> = rivals
         .iter()
         .filter_map(|id| scored.iter().find(|s| s.extension.effect.id == *id))
-        .map(|s| {
-            let mut fit = without.clone();
-            fit.extensions.push(s.extension.clone());
-            settle(survey, fit, &grown.noise)
-        })
         .collect();
-    let plans = plans(tank, survey);
-    let mut best: Option<(f64, Plan)> = None;
+    let settled = cores::each(scored.len(), |k| {
+        let mut fit = without.clone();
+        fit.extensions.push(scored[k].extension.clone());
+        Rival::new(survey, settle(survey, fit, &grown.noise))
+    });
     let left = left_in_channels(survey, &grown.last.fit);
     let only_forced = rivals.iter().any(|rival| is_one_in_decays(favourite, rival));
-    for planned in plans {
-        if only_forced && planned.0.kind == RunKind::Decay {
-            continue;
-        }
-        // The rival that is hardest to part decides.
-        let least = settled
+    let mut plans = plans(tank, survey);
+    plans.retain(|(plan, _)| !only_forced || plan.kind == RunKind::Forced);
+    // The rival that is hardest to part decides.
+    let hardest = cores::each(plans.len(), |k| {
+        settled
             .iter()
-            .map(|rival| expected(survey, &grown.last.fit, rival, &planned, left))
-            .fold(f64::INFINITY, f64::min);
+            .map(|rival| expected(survey, &grown.last.fit, rival, &plans[k], left))
+            .fold(f64::INFINITY, f64::min)
+    });
+    let mut best: Option<(f64, Plan)> = None;
+    for (least, planned) in hardest.into_iter().zip(plans) {
         if least.is_finite() && best.is_none_or(|(most, _)| least > 1.05 * most) {
             best = Some((least, planned.0));
         }
@@ -352,25 +370,27 @@ fn informing(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<NextRun> {
         );
         0.5 * (a * b - c * c).max(1e-300).ln()
     };
-    let now = volume(&solve(survey, &last.fit, &last.summaries, scatter).covariance);
-    let mut best: Option<(f64, Plan)> = None;
+    let now = volume(&last.solution.covariance);
+    let (_, known) = Joint::new(survey, &last.fit, &last.summaries).gathered(&scatter);
     let left = left_in_channels(survey, &last.fit);
-    for (plan, span_s) in plans(tank, survey) {
-        if plan.kind == RunKind::Forced || plan.amplitude_deg < 0.0 {
-            continue;
-        }
-        let (mut run, state, noise) = plan.observed(survey, &last.fit, span_s, left);
+    let mut plans = plans(tank, survey);
+    plans.retain(|(plan, _)| plan.kind == RunKind::Decay && plan.amplitude_deg > 0.0);
+    let gains = cores::each(plans.len(), |k| {
+        let (plan, span_s) = &plans[k];
+        let (mut run, state, noise) = plan.observed(survey, &last.fit, *span_s, left);
         let fit = with_run(survey, &last.fit, &run, state.clone());
         let terms = fit.terms(survey.runs.len());
-        let readings = predict(&run, &state, &terms);
-        run.roll_rad = readings[..run.roll_time_s.len()].to_vec();
+        // What it reads does not matter to what it would tell.
+        run.roll_rad = vec![0.0; run.roll_time_s.len()];
         run.moment_n_m = Vec::new();
-        let mut summaries = last.summaries.clone();
-        summaries.push(summarise(&run, &state, &terms, &[], &noise));
-        let gain =
-            now - volume(&solve(&grown_survey(survey, run), &fit, &summaries, scatter).covariance);
+        let summary = summarise(&run, &state, &terms, &[], &noise);
+        let solved = OneMore::new(&known, &grown_survey(survey, run), &fit, &summary, &scatter);
+        now - volume(&solved.eliminated.covariance())
+    });
+    let mut best: Option<(f64, Plan)> = None;
+    for (gain, planned) in gains.into_iter().zip(plans) {
         if best.is_none_or(|(most, _)| gain > 1.05 * most) {
-            best = Some((gain, plan));
+            best = Some((gain, planned.0));
         }
     }
     let (log, plan) = best?;

@@ -4,7 +4,7 @@ use super::facts;
 use crate::campaign::Campaign;
 use crate::inverse::forced::response::SteadyResponse;
 use crate::inverse::record::Record;
-use crate::model::imposed::{N_COURSE, N_HARMONICS};
+use crate::model::course::{N_COURSE, N_HARMONICS};
 use crate::model::{Base, Circumstances, Facts};
 use crate::results::IdentifiedRun;
 use crate::run::{Run, RunKind, Series};

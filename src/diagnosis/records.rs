@@ -40,7 +40,7 @@ fn found(survey: &Survey) -> Vec<Found> {
     for effect in effects::all() {
         let Acts::Record(sees) = effect.acts else { continue };
         let able: Vec<&Observation> =
-            survey.runs.iter().filter(|run| (effect.shows)(&run.at)).collect();
+            survey.runs.iter().map(|run| &**run).filter(|run| (effect.shows)(&run.at)).collect();
         let seen: Vec<(&Observation, Seen)> =
             able.iter().filter_map(|run| Some((*run, sees(&run.facts)?))).collect();
         let is_line = seen.iter().any(|(_, seen)| seen.recurs.is_some());

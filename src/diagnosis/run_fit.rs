@@ -1,13 +1,13 @@
 //! One run under a model: what its channels should read, and what each number does to them.
 
-use super::elimination::{Eliminated, Products};
+use super::elimination::{Eliminated, Place, Products, Side, product};
 use super::observation::Observation;
-use crate::model::imposed::{Course, N_COURSE};
-use crate::model::{Acts, Base, Term, free, imposed};
+use crate::model::course::{Course, N_COURSE};
+use crate::model::free::Decay;
+use crate::model::imposed::Imposed;
+use crate::model::{Base, Columns, N_BASE, Term};
 use crate::run::RunKind;
 
-/// Numbers of the base equation in one run: frequency, linear and cubic damping, moment scale.
-pub(super) const N_BASE: usize = 4;
 /// Standard deviation of the zero offset that a run may have beside the campaign's [rad]: what
 /// taking a zero leaves.
 const OFFSET_SD_RAD: f64 = 1e-4;
@@ -30,26 +30,46 @@ pub(super) struct RunState {
     pub(super) base: Base,
 }
 
-/// What both channels should read, one after the other.
-pub(super) fn predict(run: &Observation, state: &RunState, terms: &[Term]) -> Vec<f64> {
-    let own = &state.own;
-    let (times, moments) = (&run.roll_time_s, &run.moment_time_s);
-    let (mut roll, moment) = match run.at.kind {
+/// A run of either kind under a model.
+enum Simulated<'a> {
+    Decay(Decay<'a>),
+    Forced(Imposed<'a>),
+}
+
+/// Gives `then` the run as its kind is simulated.
+fn simulated<T>(
+    observation: &Observation,
+    state: &RunState,
+    terms: &[Term],
+    then: impl Fn(&Simulated<'_>) -> T,
+) -> T {
+    let (own, base, run) = (&state.own, &state.base, &observation.at);
+    let time_s = [&observation.roll_time_s[..], &observation.moment_time_s[..]];
+    match run.kind {
         RunKind::Decay => {
-            free::readings(&run.at, &state.base, terms, (own[0], own[1]), times, moments)
+            let start = [own[0], own[1]];
+            then(&Simulated::Decay(Decay { run, base, terms, start, time_s }))
         }
         RunKind::Forced => {
             let mut numbers = [0.0; N_COURSE];
             numbers.copy_from_slice(&own[..N_COURSE]);
-            imposed::readings(&run.at, &state.base, terms, &Course { numbers }, times, moments)
+            let course = &Course { numbers };
+            then(&Simulated::Forced(Imposed { run, base, terms, course, time_s }))
         }
-    };
-    let offset = own[own.len() - 1];
-    for reading in &mut roll {
+    }
+}
+
+/// What both channels should read, one after the other.
+pub(super) fn predict(run: &Observation, state: &RunState, terms: &[Term]) -> Vec<f64> {
+    let mut readings = simulated(run, state, terms, |simulated| match simulated {
+        Simulated::Decay(decay) => decay.readings(),
+        Simulated::Forced(imposed) => imposed.readings(),
+    });
+    let offset = state.own[state.own.len() - 1];
+    for reading in &mut readings[..run.roll_time_s.len()] {
         *reading += offset;
     }
-    roll.extend(moment);
-    roll
+    readings
 }
 
 /// What the channels read less what they should, one channel after the other.
@@ -58,28 +78,28 @@ pub(super) fn residual(run: &Observation, predicted: &[f64]) -> Vec<f64> {
 }
 
 /// Divides by the noise and takes out its memory, channel by channel.
-pub(super) fn whiten(run: &Observation, noise: &ChannelNoise, values: &[f64]) -> Vec<f64> {
-    let n_roll = run.roll_rad.len();
-    let mut white = Vec::with_capacity(values.len());
-    for (channel, part) in [&values[..n_roll], &values[n_roll..]].into_iter().enumerate() {
+fn whiten(run: &Observation, noise: &ChannelNoise, values: &mut [f64]) {
+    let (roll, moment) = values.split_at_mut(run.roll_rad.len());
+    for (channel, part) in [roll, moment].into_iter().enumerate() {
         let (sd, rho) = (noise.sd[channel], noise.correlation[channel]);
-        let innovation = sd * (1.0 - rho * rho).sqrt();
-        for i in 0..part.len() {
-            let value =
-                if i == 0 { part[0] / sd } else { (part[i] - rho * part[i - 1]) / innovation };
-            white.push(value);
+        let innovation = (sd * (1.0 - rho * rho).sqrt()).recip();
+        let remembered = rho * innovation;
+        for i in (1..part.len()).rev() {
+            part[i] = innovation * part[i] - remembered * part[i - 1];
+        }
+        if let Some(first) = part.first_mut() {
+            *first /= sd;
         }
     }
-    white
 }
 
 /// Inner products of what the numbers do, the run's own ones eliminated.
 #[derive(Debug, Clone)]
 pub(super) struct Summary {
-    /// Own numbers eliminated: base, parameters of the terms, candidates, record.
+    /// Own numbers eliminated: base, parameters of the terms, record.
     pub(super) eliminated: Eliminated,
-    /// Number of candidate columns.
-    pub(super) n_candidates: usize,
+    /// The strengths of each candidate beside these.
+    pub(super) candidates: Vec<Side>,
     /// What the run's own numbers would gain in misfit alone.
     pub(super) own_gain: f64,
 }
@@ -97,18 +117,14 @@ impl Summary {
     pub(super) fn refer_back(&mut self, moved_by: &[f64]) {
         let rest = &self.eliminated.rest;
         let last = rest.n() - 1;
-        let mut places: Vec<Vec<(usize, f64)>> = (0..=last).map(|i| vec![(i, 1.0)]).collect();
-        for (place, by) in places[N_BASE..].iter_mut().zip(moved_by) {
-            place.push((last, *by));
-        }
+        let mut places: Vec<Place> = (0..=last).map(|i| Place::new(i, i)).collect();
+        let moved = moved_by.iter().enumerate();
+        places.extend(moved.map(|(k, by)| Place { theirs: N_BASE + k, ours: last, by: *by }));
         let mut referred = Products::zero(last + 1);
         referred.gather(rest, &places);
         self.eliminated.rest = referred;
     }
 }
-
-/// Largest share of the typical size by which a strength is moved to see what it does.
-const SMALL: f64 = 1e-3;
 
 /// Linearises a run about its state.
 pub(super) fn summarise(
@@ -118,62 +134,26 @@ pub(super) fn summarise(
     candidates: &[Term],
     noise: &ChannelNoise,
 ) -> Summary {
-    let here = predict(run, state, terms);
-    let difference = |moved: &[f64], step: f64| -> Vec<f64> {
-        let slope: Vec<f64> = moved.iter().zip(&here).map(|(m, h)| (m - h) / step).collect();
-        whiten(run, noise, &slope)
-    };
-    let mut columns = Vec::new();
-    let n_own = state.own.len();
-    for k in 0..n_own {
-        let step = 1e-6 * if k == 0 { 1.0 } else { state.own[k].abs().max(0.1) };
-        let mut moved = state.clone();
-        moved.own[k] += step;
-        columns.push(difference(&predict(run, &moved, terms), step));
-    }
-    for k in 0..N_BASE {
-        let mut moved = state.clone();
-        let step = 1e-6 * [state.base.natural_rad_s, 1.0, 1.0, 1.0][k];
-        let base = &mut moved.base;
-        *[&mut base.natural_rad_s, &mut base.b1_per_s, &mut base.b3_s, &mut base.log_scale][k] +=
-            step;
-        columns.push(difference(&predict(run, &moved, terms), step));
-    }
-    for (t, term) in terms.iter().enumerate() {
-        for k in 0..term.values.len() {
-            let parameter = term.effect.parameter(k);
-            if parameter.typical == 0.0 || matches!(term.effect.acts, Acts::Record(_)) {
-                columns.push(vec![0.0; here.len()]);
-                continue;
-            }
-            let step = SMALL * parameter.typical;
-            let mut moved = terms.to_vec();
-            moved[t].values[k] += step;
-            columns.push(difference(&predict(run, state, &moved), step));
-        }
-    }
-    let mut n_candidates = 0;
-    let mut extended = terms.to_vec();
-    for candidate in candidates {
-        extended.push(candidate.clone());
-        for k in 0..candidate.effect.strengths.len() {
-            n_candidates += 1;
-            if !(candidate.effect.shows)(&run.at) {
-                columns.push(vec![0.0; here.len()]);
-                continue;
-            }
-            let step = SMALL * candidate.effect.strengths[k].typical;
-            let last = extended.len() - 1;
-            extended[last].values[k] = step;
-            columns.push(difference(&predict(run, state, &extended), step));
-            extended[last].values[k] = 0.0;
-        }
-        extended.pop();
-    }
-    columns.push(whiten(run, noise, &residual(run, &here)));
-    let mut products = Products::of(&columns);
+    let Columns { here, columns: mut changes } =
+        simulated(run, state, terms, |simulated| match simulated {
+            Simulated::Decay(decay) => decay.columns(candidates),
+            Simulated::Forced(imposed) => imposed.columns(candidates),
+        });
+    let (n_own, n_roll) = (state.own.len(), run.roll_time_s.len());
+    let offset = state.own[n_own - 1];
+    let mut of_offset = vec![0.0; here.len()];
+    of_offset[..n_roll].fill(1.0);
+    let mut left = residual(run, &here);
+    left[..n_roll].iter_mut().for_each(|left| *left -= offset);
+    changes.insert(n_own - 1, of_offset);
+    let n_candidates: usize = candidates.iter().map(|c| c.effect.strengths.len()).sum();
+    let n_known = changes.len() - n_candidates;
+    changes.insert(n_known, left);
+    changes.iter_mut().for_each(|column| whiten(run, noise, column));
+    let (known, tried) = changes.split_at(n_known + 1);
+    let mut products = Products::of(known);
     // The offset's prior is one more reading of it.
-    let (last, offset) = (products.n() - 1, state.own[n_own - 1]);
+    let last = products.n() - 1;
     let precision = OFFSET_SD_RAD.powi(-2);
     products.add(n_own - 1, n_own - 1, precision);
     products.add(n_own - 1, last, -precision * offset);
@@ -181,7 +161,14 @@ pub(super) fn summarise(
     let before = products.at(last, last);
     let eliminated = products.eliminate(n_own);
     let own_gain = before - eliminated.rest.at(last - n_own, last - n_own);
-    Summary { eliminated, n_candidates, own_gain }
+    let mut next = 0;
+    let candidates = candidates.iter().map(|candidate| {
+        let first = next;
+        next += candidate.effect.strengths.len();
+        eliminated.beside(&Side::of(&tried[first..next], known))
+    });
+    let candidates = candidates.collect();
+    Summary { eliminated, candidates, own_gain }
 }
 
 /// Twice the negative logarithm of the likelihood, noise given, up to a constant.
@@ -191,8 +178,8 @@ pub(super) fn misfit(
     terms: &[Term],
     noise: &ChannelNoise,
 ) -> f64 {
-    let left = residual(run, &predict(run, state, terms));
+    let mut left = residual(run, &predict(run, state, terms));
     let offset = state.own[state.own.len() - 1] / OFFSET_SD_RAD;
-    let white: f64 = whiten(run, noise, &left).iter().map(|r| r * r).sum();
-    white + offset * offset
+    whiten(run, noise, &mut left);
+    product(&left, &left) + offset * offset
 }

@@ -1,7 +1,9 @@
 //! The score test: how much every effect of the table would explain, in one pass.
 
+use super::elimination::{Eliminated, Products, Side};
 use super::run_fit::ChannelNoise;
-use super::solve::{Layout, Marginal, gathered, log_mean_exp, marginal, scatters, solve};
+use super::scatter::scatters;
+use super::solve::{Joint, Solution, log_mean_exp};
 use super::survey::{Extension, Fit, Survey};
 use crate::model::effects;
 use crate::model::{Acts, Effect, Scope, Term};
@@ -41,23 +43,15 @@ fn tried(survey: &Survey, fit: &Fit) -> Vec<&'static Effect> {
 struct Candidate {
     effect: &'static Effect,
     term: Term,
-    /// Place among the candidate columns of a run.
-    first: usize,
 }
 
-fn candidates(
-    effects: &[&'static Effect],
-    run: &crate::model::Circumstances,
-    first: usize,
-) -> Vec<Candidate> {
-    let mut next = first;
+fn candidates(effects: &[&'static Effect], run: &crate::model::Circumstances) -> Vec<Candidate> {
     let mut all = Vec::new();
     for effect in effects {
         for shape in (effect.nodes)(run) {
             let mut values = vec![0.0; effect.strengths.len()];
             values.extend(shape);
-            all.push(Candidate { effect, term: Term { effect, values }, first: next });
-            next += effect.strengths.len();
+            all.push(Candidate { effect, term: Term { effect, values } });
         }
     }
     all
@@ -79,25 +73,23 @@ pub(super) fn score(survey: &Survey, fit: &Fit, noise: &[ChannelNoise]) -> Vec<S
             survey.runs[*a].at.amplitude_rad.total_cmp(&survey.runs[*b].at.amplitude_rad)
         })
         .unwrap_or(0);
-    let common = candidates(&common, &survey.runs[largest].at, 0);
-    let n_common = common.last().map_or(0, |c| c.first + c.effect.strengths.len());
+    let common = candidates(&common, &survey.runs[largest].at);
     let own: Vec<Vec<Candidate>> = survey
         .runs
         .iter()
         .map(|run| {
             let shown: Vec<_> = own.iter().copied().filter(|e| (e.shows)(&run.at)).collect();
-            candidates(&shown, &run.at, n_common)
+            candidates(&shown, &run.at)
         })
         .collect();
     let summaries = survey.summaries(fit, noise, &|r| {
         common.iter().chain(&own[r]).map(|candidate| candidate.term.clone()).collect()
     });
-    let layout = Layout::new(survey, fit);
-    let n_conditions = survey.conditions.len();
-    // Columns: per condition one for every strength; a campaign's effect uses the first alone.
-    let is_shared: Vec<bool> = common
+    let joint = Joint::new(survey, fit, &summaries);
+    let sides: Vec<Vec<Side>> = summaries
         .iter()
-        .flat_map(|c| vec![c.effect.scope == Scope::Campaign; c.effect.strengths.len()])
+        .enumerate()
+        .map(|(r, run)| run.candidates.iter().map(|c| joint.deviating_side(r, c)).collect())
         .collect();
     let mut logs: Vec<Vec<f64>> = vec![Vec::new(); common.len()];
     let mut own_logs: Vec<Vec<Vec<f64>>> =
@@ -108,47 +100,23 @@ pub(super) fn score(survey: &Survey, fit: &Fit, noise: &[ChannelNoise]) -> Vec<S
         own.iter().map(|all| vec![(f64::NEG_INFINITY, Vec::new()); all.len()]).collect();
     let mut base_logs = Vec::new();
     for scatter in scatters(survey) {
-        let base = solve(survey, fit, &summaries, scatter).log_evidence;
+        let solution = joint.solve(scatter);
+        let base = solution.log_evidence;
         base_logs.push(base);
-        let marginals: Vec<Marginal> = (0..survey.runs.len())
-            .map(|r| marginal(survey, fit, r, &summaries[r], &scatter))
-            .collect();
-        let place = |run: usize, column: usize| -> Option<usize> {
-            let condition = survey.condition_of[run];
-            let at = |condition: usize| column * n_conditions + condition;
-            (column < n_common).then(|| at(if is_shared[column] { 0 } else { condition }))
-        };
-        let all = gathered(survey, fit, &layout, &marginals, n_common * n_conditions, &place);
-        let left = all.eliminate(layout.n).rest;
         for (c, candidate) in common.iter().enumerate() {
-            let copies = if candidate.effect.scope == Scope::Campaign { 1 } else { n_conditions };
-            let columns: Vec<usize> = (0..copies)
-                .flat_map(|copy| {
-                    (0..candidate.effect.strengths.len())
-                        .map(move |k| (candidate.first + k) * n_conditions + copy)
-                })
-                .collect();
-            let brought = bring(&left, &columns, candidate.effect);
+            let side = common_side(survey, &joint, &solution, candidate, |r| &sides[r][c]);
+            let brought = bring(&solution.eliminated, &side, candidate.effect);
             logs[c].push(base + brought.log_bayes_factor);
             if base + brought.log_bayes_factor > best_strengths[c].0 {
                 best_strengths[c] = (base + brought.log_bayes_factor, brought.strengths);
             }
         }
-        for r in 0..survey.runs.len() {
-            if own[r].is_empty() {
-                continue;
-            }
-            let n_own = own[r].last().map_or(0, |c| c.first + c.effect.strengths.len()) - n_common;
-            let place = |run: usize, column: usize| -> Option<usize> {
-                (run == r && column >= n_common).then(|| column - n_common)
-            };
-            let all = gathered(survey, fit, &layout, &marginals, n_own, &place);
-            let left = all.eliminate(layout.n).rest;
-            for (c, candidate) in own[r].iter().enumerate() {
-                let columns: Vec<usize> = (0..candidate.effect.strengths.len())
-                    .map(|k| candidate.first + k - n_common)
-                    .collect();
-                let brought = bring(&left, &columns, candidate.effect);
+        for (r, own) in own.iter().enumerate() {
+            for (c, candidate) in own.iter().enumerate() {
+                let mut side = Side::zero(candidate.effect.strengths.len(), joint.layout.n + 1);
+                let own = solution.marginals[r].eliminated.beside(&sides[r][common.len() + c]);
+                side.gather(&own, 0, &joint.places[r]);
+                let brought = bring(&solution.eliminated, &side, candidate.effect);
                 own_logs[r][c].push(brought.log_bayes_factor);
                 if base + brought.log_bayes_factor > own_strengths[r][c].0 {
                     own_strengths[r][c] = (base + brought.log_bayes_factor, brought.strengths);
@@ -163,21 +131,44 @@ pub(super) fn score(survey: &Survey, fit: &Fit, noise: &[ChannelNoise]) -> Vec<S
     scored
 }
 
+/// A candidate of all runs beside the campaign's columns: one copy, or one for every condition.
+fn common_side<'s>(
+    survey: &Survey,
+    joint: &Joint<'_>,
+    solution: &Solution,
+    candidate: &Candidate,
+    of_run: impl Fn(usize) -> &'s Side,
+) -> Side {
+    let n = candidate.effect.strengths.len();
+    let is_shared = candidate.effect.scope == Scope::Campaign;
+    let copies = if is_shared { 1 } else { survey.conditions.len() };
+    let mut side = Side::zero(n * copies, joint.layout.n + 1);
+    for (r, marginal) in solution.marginals.iter().enumerate() {
+        if (candidate.effect.shows)(&survey.runs[r].at) {
+            let copy = if is_shared { 0 } else { survey.condition_of[r] };
+            side.gather(&marginal.eliminated.beside(of_run(r)), n * copy, &joint.places[r]);
+        }
+    }
+    side
+}
+
 /// Adds columns with their priors to what the model leaves.
-fn bring(left: &super::elimination::Products, columns: &[usize], effect: &Effect) -> Brought {
-    let mut picked = columns.to_vec();
-    picked.push(left.n() - 1);
-    let mut products = left.picked(&picked);
-    let n = columns.len();
+fn bring(known: &Eliminated, side: &Side, effect: &Effect) -> Brought {
+    let left = known.beside(side);
+    let n = left.among.n();
+    let mut products = Products::zero(n + 1);
     let mut log_precision = 0.0;
     for i in 0..n {
+        for j in i..n {
+            products.add(i, j, left.among.at(i, j));
+        }
+        products.add(i, n, left.with(i, 0));
         let sd = effect.strengths[i % effect.strengths.len()].typical;
         products.add(i, i, sd.powi(-2));
         log_precision -= 2.0 * sd.ln();
     }
-    let before = products.at(n, n);
     let eliminated = products.eliminate(n);
-    let gain = before - eliminated.rest.at(0, 0);
+    let gain = -eliminated.rest.at(0, 0);
     Brought {
         log_bayes_factor: 0.5 * (gain - eliminated.log_determinant + log_precision),
         strengths: eliminated.back(&[]),

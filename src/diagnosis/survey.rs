@@ -1,14 +1,15 @@
 //! The runs of a campaign together, and the model that is fitted to all of them.
 
-use std::thread;
+use std::sync::Arc;
 
+use super::cores;
 use super::observation::Observation;
 use super::run_fit::{ChannelNoise, RunState, Summary, misfit, predict, residual, summarise};
 use crate::model::{Effect, Term};
 
 /// The runs with the condition that each belongs to.
 pub(super) struct Survey {
-    pub(super) runs: Vec<Observation>,
+    pub(super) runs: Vec<Arc<Observation>>,
     /// Names of the conditions.
     pub(super) conditions: Vec<String>,
     /// Place of each run's condition.
@@ -58,13 +59,15 @@ pub(super) struct Fit {
 impl Fit {
     /// The effects as they act in one run.
     pub(super) fn terms(&self, run: usize) -> Vec<Term> {
-        self.extensions
-            .iter()
-            .filter_map(|extension| {
-                let slot = extension.slot_of[run]?;
-                Some(Term { effect: extension.effect, values: extension.slots[slot].clone() })
-            })
-            .collect()
+        self.extensions.iter().filter_map(|extension| extension.term(run)).collect()
+    }
+}
+
+impl Extension {
+    /// The effect as it acts in one run, if it does.
+    pub(super) fn term(&self, run: usize) -> Option<Term> {
+        let slot = self.slot_of[run]?;
+        Some(Term { effect: self.effect, values: self.slots[slot].clone() })
     }
 }
 
@@ -84,7 +87,7 @@ impl Survey {
                 })
             })
             .collect();
-        Self { runs, conditions, condition_of }
+        Self { runs: runs.into_iter().map(Arc::new).collect(), conditions, condition_of }
     }
 
     /// The fit that the identifications of the runs suggest.
@@ -132,11 +135,9 @@ impl Survey {
         })
     }
 
-    /// What the model leaves of every run.
-    pub(super) fn residuals(&self, fit: &Fit) -> Vec<Vec<f64>> {
-        self.each_run(&|r| {
-            residual(&self.runs[r], &predict(&self.runs[r], &fit.states[r], &fit.terms(r)))
-        })
+    /// What the model leaves of a run.
+    pub(super) fn residual(&self, fit: &Fit, run: usize) -> Vec<f64> {
+        residual(&self.runs[run], &predict(&self.runs[run], &fit.states[run], &fit.terms(run)))
     }
 
     /// Sum of the squares that the model leaves, in units of the noise.
@@ -148,30 +149,13 @@ impl Survey {
 
     /// Does the same for every run, on every core; the answers are in the order of the runs.
     pub(super) fn each_run<T: Send>(&self, work: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
-        let n_threads = thread::available_parallelism().map_or(1, usize::from).min(self.runs.len());
-        let mut answers: Vec<(usize, T)> = thread::scope(|scope| {
-            let threads: Vec<_> = (0..n_threads)
-                .map(|first| {
-                    let own = (first..self.runs.len()).step_by(n_threads);
-                    scope.spawn(move || own.map(|r| (r, work(r))).collect::<Vec<_>>())
-                })
-                .collect();
-            let joined = threads.into_iter().map(thread::ScopedJoinHandle::join);
-            joined
-                .flat_map(|answers| match answers {
-                    Ok(answers) => answers,
-                    Err(panic) => std::panic::resume_unwind(panic),
-                })
-                .collect()
-        });
-        answers.sort_by_key(|(r, _)| *r);
-        answers.into_iter().map(|(_, answer)| answer).collect()
+        cores::each(self.runs.len(), work)
     }
 
     /// The noise of every channel: at least what neighbouring values show, and what the model
     /// leaves, with its memory where that is sure.
     pub(super) fn noise(&self, fit: &Fit) -> Vec<ChannelNoise> {
-        let residuals = self.residuals(fit);
+        let residuals = self.each_run(&|run| self.residual(fit, run));
         let each = self.runs.iter().zip(&residuals).map(|(run, left)| {
             let n_roll = run.roll_rad.len();
             let mut noise = ChannelNoise { sd: [1.0; 2], correlation: [0.0; 2] };

@@ -2,12 +2,12 @@
 
 use super::gain::{self, HeldOut};
 use super::growth::{Grown, excess, grow, leftovers};
+use super::layout::Layout;
 use super::leftover::Leftover;
 use super::next_run::{NextRun, next_run};
 use super::observation::Observation;
 use super::records;
 use super::settle::Settled;
-use super::solve::Layout;
 use super::survey::{N_LAW, Survey};
 use super::unexplained::{Unexplained, unexplained};
 use crate::campaign::Tank;

@@ -1,7 +1,8 @@
 //! What an effect is: its equation as functions of an instant, its parameters, its scope.
 
-use super::free::History;
-use super::imposed::Course;
+use super::course::Course;
+use super::history::History;
+use super::number::{Number, Sloped};
 use crate::run::RunKind;
 
 /// One number of an effect.
@@ -177,49 +178,79 @@ pub enum Past<'a> {
 }
 
 impl Past<'_> {
-    /// Roll [rad] and roll rate [rad/s] at an earlier time [s].
-    pub fn at(&self, time_s: f64) -> [f64; 2] {
+    /// Roll [rad], rate [rad/s] and acceleration [rad/s2] at an earlier time [s].
+    pub fn motion(&self, time_s: f64) -> [f64; 3] {
         match self {
             Self::Free(history) => history.at(time_s),
-            Self::Imposed(course) => {
-                let [roll, rate, _] = course.at(time_s);
-                [roll, rate]
-            }
+            Self::Imposed(course) => course.at(time_s),
         }
     }
 }
 
 /// The motion at one instant.
 #[derive(Debug, Clone, Copy)]
-pub struct Instant<'a> {
+pub struct Instant<'a, N = f64> {
     /// Time since the start of the run [s].
     pub time_s: f64,
     /// Roll [rad].
-    pub roll_rad: f64,
+    pub roll_rad: N,
     /// Roll rate [rad/s].
-    pub rate_rad_per_s: f64,
+    pub rate_rad_per_s: N,
     /// Roll acceleration [rad/s2]; in a decay, that of the base equation.
-    pub acceleration_rad_per_s2: f64,
+    pub acceleration_rad_per_s2: N,
     /// Exciting moment [N m].
-    pub moment_n_m: f64,
+    pub moment_n_m: N,
     /// What came before.
     pub past: Past<'a>,
     /// The run.
     pub run: &'a Circumstances,
 }
 
-/// A function of the instant and the parameters, strengths first, then shapes.
-pub type Law = fn(&Instant<'_>, &[f64]) -> f64;
+impl<N: Number> Instant<'_, N> {
+    /// Roll [rad] and roll rate [rad/s] some time [s] ago.
+    pub fn ago(&self, delay_s: N) -> [N; 2] {
+        let time_s = -delay_s + self.time_s;
+        time_s.earlier(self.past.motion(time_s.value()))
+    }
+}
 
-/// States of an effect that remembers.
+/// A function of the instant and the parameters, strengths first, then shapes: one equation,
+/// compiled for plain numbers and for numbers that know their slopes.
+#[derive(Debug, Clone, Copy)]
+pub struct Law {
+    /// For its value.
+    pub plain: fn(&Instant<'_>, &[f64]) -> f64,
+    /// For its slopes as well.
+    pub sloped: fn(&Instant<'_, Sloped>, &[Sloped]) -> Sloped,
+}
+
+/// What a channel adds to all of a record's instants, in order of time.
+#[derive(Debug, Clone, Copy)]
+pub struct Reading {
+    /// For its value.
+    pub plain: fn(&[Instant<'_>], &[f64]) -> Vec<f64>,
+    /// For its slopes as well.
+    pub sloped: fn(&[Instant<'_, Sloped>], &[Sloped]) -> Vec<Sloped>,
+}
+
+/// A function of the instant, the parameters and the states of an effect that remembers.
+#[derive(Debug, Clone, Copy)]
+pub struct LagLaw<P, S> {
+    /// For its value.
+    pub plain: fn(&Instant<'_>, &[f64], &[f64]) -> P,
+    /// For its slopes as well.
+    pub sloped: fn(&Instant<'_, Sloped>, &[Sloped], &[Sloped]) -> S,
+}
+
+/// States of an effect that remembers; their equation is linear in them and the same all along.
 #[derive(Debug, Clone, Copy)]
 pub struct Lag {
     /// Number of states, at most [`MOST_LAGS`].
     pub n_states: usize,
     /// Slopes of the states.
-    pub slope: fn(&Instant<'_>, &[f64], &[f64]) -> [f64; MOST_LAGS],
+    pub slope: LagLaw<[f64; MOST_LAGS], [Sloped; MOST_LAGS]>,
     /// Moment per unit inertia [rad/s2] of the states.
-    pub moment: fn(&Instant<'_>, &[f64], &[f64]) -> f64,
+    pub moment: LagLaw<f64, Sloped>,
 }
 
 /// Most states that an effect may have.
@@ -230,12 +261,14 @@ pub const MOST_LAGS: usize = 2;
 pub enum Acts {
     /// Moment per unit inertia [rad/s2] on the right-hand side.
     Moment(Law),
+    /// The same of the roll and its rate some time ago: a parameter is the delay [s].
+    Echo(Law, usize),
     /// Share added to the inertia [-].
     Inertia(Law),
     /// Moment of states that follow the motion.
     Lagging(Lag),
     /// What the roll channel adds [rad], sample by sample in order of time.
-    Roll(fn(&[Instant<'_>], &[f64]) -> Vec<f64>),
+    Roll(Reading),
     /// What the moment channel adds [N m].
     Drive(Law),
     /// Seen in the record alone; it disturbs no estimate but the noise.

@@ -1,60 +1,78 @@
 //! A decay simulated: the model rolls freely from its initial state.
 
+use super::channel::{self, Tangent};
 use super::effect::{Acts, Circumstances, Instant, MOST_LAGS, Past};
-use super::term::{Base, Term};
+use super::free_changes::Changes;
+use super::history::History;
+use super::term::{Base, Columns, Term};
 
 /// Runge-Kutta steps a period: with the fifth-degree course between, the phase of a roll errs by
 /// less than 1e-5 a period, which the natural frequency absorbs.
 const STEPS_PER_PERIOD: f64 = 48.0;
 
-/// Roll, rate and acceleration at equal steps.
-#[derive(Debug, Clone, Default)]
-pub struct History {
-    step_s: f64,
-    states: Vec<[f64; 3]>,
-}
-
-impl History {
-    /// Roll [rad] and rate [rad/s] at a time [s]; nil before the start.
-    pub fn at(&self, time_s: f64) -> [f64; 2] {
-        if time_s <= 0.0 || self.states.len() < 2 {
-            return [0.0, 0.0];
-        }
-        let [roll, rate, _] = self.motion(time_s);
-        [roll, rate]
-    }
-
-    /// Roll, rate and acceleration at a time [s] by the quintic between two steps.
-    fn motion(&self, time_s: f64) -> [f64; 3] {
-        let h = self.step_s;
-        let place = (time_s / h).clamp(0.0, (self.states.len() - 1) as f64);
-        let before = (place as usize).min(self.states.len() - 2);
-        let x = place - before as f64;
-        let ([p0, v0, a0], [p1, v1, a1]) = (self.states[before], self.states[before + 1]);
-        let (c1, c2) = (h * v0, 0.5 * h * h * a0);
-        let (d, e, f) = (p1 - p0 - c1 - c2, h * v1 - c1 - 2.0 * c2, h * h * a1 - 2.0 * c2);
-        let c3 = 10.0 * d - 4.0 * e + 0.5 * f;
-        let c4 = -15.0 * d + 7.0 * e - f;
-        let c5 = 6.0 * d - 3.0 * e + 0.5 * f;
-        let roll = p0 + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5))));
-        let rate = (c1 + x * (2.0 * c2 + x * (3.0 * c3 + x * (4.0 * c4 + x * 5.0 * c5)))) / h;
-        let acceleration = (2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * 20.0 * c5))) / (h * h);
-        [roll, rate, acceleration]
-    }
-}
-
 /// Most states: roll, rate, and those of up to six effects that remember.
 const MOST_STATES: usize = 2 + 6 * MOST_LAGS;
 
-/// The equation of one decay.
-struct Equation<'a> {
-    run: &'a Circumstances,
-    base: &'a Base,
-    terms: &'a [Term],
+/// One decay: its equation, its start, and when its channels are read.
+#[derive(Debug, Clone, Copy)]
+pub struct Decay<'a> {
+    /// The run.
+    pub run: &'a Circumstances,
+    /// Base equation.
+    pub base: &'a Base,
+    /// Effects that extend it.
+    pub terms: &'a [Term],
+    /// Roll [rad] and rate [rad/s] at the start.
+    pub start: [f64; 2],
+    /// Times of the roll and of the moment [s].
+    pub time_s: [&'a [f64]; 2],
 }
 
-impl Equation<'_> {
-    fn instant<'b>(&'b self, time_s: f64, roll: f64, rate: f64, past: Past<'b>) -> Instant<'b> {
+/// The motion from step to step.
+pub(super) struct Path<const N: usize> {
+    pub(super) step_s: f64,
+    pub(super) history: History,
+    /// Roll, rate and what the effects remember, at every step; their number is even.
+    pub(super) points: Vec<[f64; N]>,
+}
+
+impl<'a> Decay<'a> {
+    /// What both channels read: roll [rad], then moment [N m].
+    pub fn readings(&self) -> Vec<f64> {
+        match self.n_lags() {
+            0 => self.read(&self.path::<2>(false)),
+            1..=2 => self.read(&self.path::<4>(false)),
+            3..=4 => self.read(&self.path::<6>(false)),
+            _ => self.read(&self.path::<MOST_STATES>(false)),
+        }
+    }
+
+    /// The same with what each number does to them: initial roll and rate, base equation,
+    /// parameters of the terms, strengths of the candidates.
+    pub fn columns(&self, candidates: &[Term]) -> Columns {
+        match self.n_lags() {
+            0 => self.changed::<2>(candidates),
+            1..=2 => self.changed::<4>(candidates),
+            3..=4 => self.changed::<6>(candidates),
+            _ => self.changed::<MOST_STATES>(candidates),
+        }
+    }
+
+    fn n_lags(&self) -> usize {
+        let states = |term: &Term| match term.effect.acts {
+            Acts::Lagging(lag) => lag.n_states,
+            _ => 0,
+        };
+        self.terms.iter().map(states).sum()
+    }
+
+    /// The motion at one instant; the acceleration is that of the base equation.
+    pub(super) fn instant<'b>(
+        &'b self,
+        time_s: f64,
+        [roll, rate]: [f64; 2],
+        history: &'b History,
+    ) -> Instant<'b> {
         let Base { natural_rad_s: w, b1_per_s, b3_s, .. } = *self.base;
         Instant {
             time_s,
@@ -62,25 +80,25 @@ impl Equation<'_> {
             rate_rad_per_s: rate,
             acceleration_rad_per_s2: -b1_per_s * rate - b3_s * rate.powi(3) - w * w * roll,
             moment_n_m: 0.0,
-            past,
+            past: Past::Free(history),
             run: self.run,
         }
     }
 
     fn slope<const N: usize>(&self, time_s: f64, state: &[f64; N], history: &History) -> [f64; N] {
-        let instant = self.instant(time_s, state[0], state[1], Past::Free(history));
+        let instant = self.instant(time_s, [state[0], state[1]], history);
         let mut moment = instant.acceleration_rad_per_s2;
         let mut inertia = 1.0;
         let mut slope = [0.0; N];
         let mut next = 2;
         for Term { effect, values } in self.terms {
             match effect.acts {
-                Acts::Moment(law) => moment += law(&instant, values),
-                Acts::Inertia(law) => inertia += law(&instant, values),
+                Acts::Moment(law) | Acts::Echo(law, _) => moment += (law.plain)(&instant, values),
+                Acts::Inertia(law) => inertia += (law.plain)(&instant, values),
                 Acts::Lagging(lag) if next + lag.n_states <= N => {
                     let own = &state[next..next + lag.n_states];
-                    moment += (lag.moment)(&instant, values, own);
-                    let slopes = (lag.slope)(&instant, values, own);
+                    moment += (lag.moment.plain)(&instant, values, own);
+                    let slopes = (lag.slope.plain)(&instant, values, own);
                     slope[next..next + lag.n_states].copy_from_slice(&slopes[..lag.n_states]);
                     next += lag.n_states;
                 }
@@ -88,21 +106,29 @@ impl Equation<'_> {
             }
         }
         slope[0] = state[1];
-        slope[1] = moment / inertia.max(0.1);
+        slope[1] = moment / inertia.max(LEAST_INERTIA);
         slope
     }
 
-    /// Runge-Kutta of the fourth order with `N` states, from a start to at least `last_s` [s].
-    fn history<const N: usize>(&self, start: (f64, f64), last_s: f64) -> History {
+    /// Runge-Kutta of the fourth order with `N` states, to the last reading.
+    fn path<const N: usize>(&self, with_points: bool) -> Path<N> {
         let step_s = std::f64::consts::TAU / (STEPS_PER_PERIOD * self.run.natural_rad_s);
-        let n_steps = (last_s / step_s).ceil().max(1.0) as usize;
-        let mut history = History { step_s, states: Vec::with_capacity(n_steps + 1) };
+        let last_s = self.time_s.iter().filter_map(|t| t.last()).fold(0.0_f64, |a, b| a.max(*b));
+        let n_steps = 2 * (0.5 * last_s / step_s).ceil().max(1.0) as usize;
+        let mut history = History::new(step_s, n_steps);
+        let mut points: Vec<[f64; N]> = Vec::new();
         let mut state = [0.0; N];
-        (state[0], state[1]) = start;
+        state[..2].copy_from_slice(&self.start);
         for step in 0..=n_steps {
             let time_s = step as f64 * step_s;
             let first = self.slope(time_s, &state, &history);
-            history.states.push([state[0], state[1], first[1]]);
+            history.push([state[0], state[1], first[1]]);
+            if with_points {
+                points.push(state);
+            }
+            if step == n_steps {
+                break;
+            }
             let along = |slope: &[f64; N], share: f64| -> [f64; N] {
                 std::array::from_fn(|i| state[i] + share * step_s * slope[i])
             };
@@ -119,72 +145,78 @@ impl Equation<'_> {
                 state = [3.0; N];
             }
         }
-        history
+        Path { step_s, history, points }
     }
-}
 
-/// What both channels of a decay read: roll [rad] at `roll_time_s` and moment [N m] at
-/// `moment_time_s`, from an initial roll and rate.
-pub fn readings(
-    run: &Circumstances,
-    base: &Base,
-    terms: &[Term],
-    start: (f64, f64),
-    roll_time_s: &[f64],
-    moment_time_s: &[f64],
-) -> (Vec<f64>, Vec<f64>) {
-    let equation = Equation { run, base, terms };
-    let last_s = [roll_time_s, moment_time_s]
-        .iter()
-        .filter_map(|t| t.last())
-        .fold(0.0, |a: f64, b| a.max(*b));
-    let n_lags: usize = terms
-        .iter()
-        .map(|term| if let Acts::Lagging(lag) = term.effect.acts { lag.n_states } else { 0 })
-        .sum();
-    let history = match n_lags {
-        0 => equation.history::<2>(start, last_s),
-        1..=2 => equation.history::<4>(start, last_s),
-        3..=4 => equation.history::<6>(start, last_s),
-        _ => equation.history::<MOST_STATES>(start, last_s),
-    };
-    let roll = roll_readings(&equation, &history, roll_time_s);
-    let moment = moment_time_s
-        .iter()
-        .map(|&time_s| {
-            let [roll, rate, _] = history.motion(time_s);
-            let instant = equation.instant(time_s, roll, rate, Past::Free(&history));
-            terms
-                .iter()
-                .map(|Term { effect, values }| match effect.acts {
-                    Acts::Drive(law) => law(&instant, values),
-                    _ => 0.0,
-                })
-                .sum()
-        })
-        .collect();
-    (roll, moment)
-}
-
-fn roll_readings(equation: &Equation<'_>, history: &History, time_s: &[f64]) -> Vec<f64> {
-    let mut readings: Vec<f64> = time_s.iter().map(|&t| history.motion(t)[0]).collect();
-    let chain = |term: &Term| matches!(term.effect.acts, Acts::Roll(_));
-    if !equation.terms.iter().any(chain) {
-        return readings;
-    }
-    let instants: Vec<Instant<'_>> = time_s
-        .iter()
-        .map(|&t| {
-            let [roll, rate, acceleration] = history.motion(t);
-            let instant = equation.instant(t, roll, rate, Past::Free(history));
+    /// The motion at the times of a channel.
+    fn instants<'b>(&'b self, channel: usize, history: &'b History) -> Vec<Instant<'b>> {
+        let at = |t: &f64| {
+            let [roll, rate, acceleration] = history.motion(*t);
+            let instant = self.instant(*t, [roll, rate], history);
             Instant { acceleration_rad_per_s2: acceleration, ..instant }
-        })
-        .collect();
-    for Term { effect, values } in equation.terms {
-        if let Acts::Roll(adds) = effect.acts {
-            let added = adds(&instants, values);
-            readings.iter_mut().zip(added).for_each(|(reading, more)| *reading += more);
-        }
+        };
+        self.time_s[channel].iter().map(at).collect()
     }
-    readings
+
+    fn read<const N: usize>(&self, path: &Path<N>) -> Vec<f64> {
+        let mut readings: Vec<f64> =
+            path.history.rolls(&path.history.sampling(self.time_s[0])).collect();
+        if channel::is_read_through(self.terms, 0) {
+            channel::add(self.terms, 0, &self.instants(0, &path.history), &mut readings);
+        }
+        let mut moment = vec![0.0; self.time_s[1].len()];
+        if channel::is_read_through(self.terms, 1) {
+            channel::add(self.terms, 1, &self.instants(1, &path.history), &mut moment);
+        }
+        readings.extend(moment);
+        readings
+    }
+
+    fn changed<const N: usize>(&self, candidates: &[Term]) -> Columns {
+        let path = self.path::<N>(true);
+        let here = self.read(&path);
+        let changes = Changes::new(self, &path, candidates);
+        let n_roll = self.time_s[0].len();
+        let is_through = [0, 1].map(|channel| channel::is_read_through(self.terms, channel));
+        let mut tangents: [Vec<Option<Vec<Tangent>>>; 2] = [Vec::new(), Vec::new()];
+        let mut columns = Vec::with_capacity(changes.n_columns() + 2);
+        let mut change = changes.nothing_yet();
+        let sampling = change.sampling(self.time_s[0]);
+        for number in 0..changes.n_columns() {
+            let moves = changes.fill(number, &mut change);
+            let mut column = Vec::with_capacity(here.len());
+            if moves {
+                column.extend(change.rolls(&sampling));
+            }
+            column.resize(here.len(), 0.0);
+            columns.push(column);
+            for channel in (0..2).filter(|channel| is_through[*channel]) {
+                let motion = |t: &f64| -> Tangent {
+                    let [roll, rate, acceleration] = change.motion(*t);
+                    [roll, rate, acceleration, 0.0]
+                };
+                let all = self.time_s[channel].iter().map(motion);
+                tangents[channel].push(moves.then(|| all.collect()));
+            }
+        }
+        for channel in 0..2 {
+            if !is_through[channel] && !channel::is_read_through(candidates, channel) {
+                continue;
+            }
+            let instants = self.instants(channel, &path.history);
+            let first = if channel == 0 { 0 } else { n_roll };
+            channel::add_candidates(candidates, channel, &instants, &mut columns, first);
+            if is_through[channel] {
+                let (terms, tangents) = (self.terms, &tangents[channel]);
+                let columns = &mut columns;
+                channel::add_tangents(terms, N_START, channel, &instants, tangents, columns, first);
+            }
+        }
+        Columns { here, columns }
+    }
 }
+
+/// Initial roll and rate.
+pub(super) const N_START: usize = 2;
+/// Share of the inertia below which no effect can bring it.
+pub(super) const LEAST_INERTIA: f64 = 0.1;

@@ -1,166 +1,157 @@
 //! A forced run simulated: the rod imposes a periodic course, and the moment follows from it.
 
-use super::effect::{Acts, Circumstances, Instant, Lag, MOST_LAGS, Past};
+use super::channel;
+use super::course::Course;
+use super::effect::{Acts, Circumstances, Instant, MOST_LAGS, Past};
+use super::lagging::follow;
+use super::linear::between;
 use super::term::{Base, Term};
-
-/// Harmonics of the imposed course.
-pub const N_HARMONICS: usize = 3;
-/// Numbers of a course: mean, pairs of each harmonic, frequency.
-pub const N_COURSE: usize = 2 + 2 * N_HARMONICS;
-
-/// `phi = c0 + sum_h a_h cos(h w t) + b_h sin(h w t)`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Course {
-    /// `c0`, then `a_h, b_h` with the fundamental first, then `w` [rad/s].
-    pub numbers: [f64; N_COURSE],
-}
-
-impl Course {
-    /// Roll, rate and acceleration at a time [s].
-    pub fn at(&self, time_s: f64) -> [f64; 3] {
-        let w = self.numbers[N_COURSE - 1];
-        let (sin, cos) = (w * time_s).sin_cos();
-        let (mut s, mut c) = (sin, cos);
-        let mut motion = [self.numbers[0], 0.0, 0.0];
-        for h in 0..N_HARMONICS {
-            let hw = (h + 1) as f64 * w;
-            let (a, b) = (self.numbers[1 + 2 * h], self.numbers[2 + 2 * h]);
-            let value = a * c + b * s;
-            motion[0] += value;
-            motion[1] += hw * (b * c - a * s);
-            motion[2] -= hw * hw * value;
-            (s, c) = (s * cos + c * sin, c * cos - s * sin);
-        }
-        motion
-    }
-}
 
 /// Periods before the start over which effects that remember settle.
 const PERIODS_BEFORE: f64 = 8.0;
-const STEPS_PER_PERIOD: f64 = 48.0;
+const STEPS_PER_PERIOD: f64 = 96.0;
 
-/// What both channels read: roll [rad] and moment [N m].
-pub fn readings(
-    run: &Circumstances,
-    base: &Base,
-    terms: &[Term],
-    course: &Course,
-    roll_time_s: &[f64],
-    moment_time_s: &[f64],
-) -> (Vec<f64>, Vec<f64>) {
-    let lagging: Vec<Lagged> = terms
-        .iter()
-        .filter_map(|term| match term.effect.acts {
-            Acts::Lagging(lag) => Some(lagged(run, course, &lag, &term.values)),
-            _ => None,
-        })
-        .collect();
-    let Base { natural_rad_s: w, b1_per_s, b3_s, log_scale } = *base;
-    let scale = log_scale.exp() * run.inertia_kg_m2 * (run.natural_rad_s / w).powi(2);
-    let instant = |time_s: f64| {
-        let [roll, rate, acceleration] = course.at(time_s);
-        let mut instant = Instant {
-            time_s,
-            roll_rad: roll,
-            rate_rad_per_s: rate,
-            acceleration_rad_per_s2: acceleration,
-            moment_n_m: 0.0,
-            past: Past::Imposed(course),
-            run,
+/// One forced run: its equation, its course, and when its channels are read.
+#[derive(Debug, Clone, Copy)]
+pub struct Imposed<'a> {
+    /// The run.
+    pub run: &'a Circumstances,
+    /// Base equation.
+    pub base: &'a Base,
+    /// Effects that extend it.
+    pub terms: &'a [Term],
+    /// The course of the roll.
+    pub course: &'a Course,
+    /// Times of the roll and of the moment [s].
+    pub time_s: [&'a [f64]; 2],
+}
+
+/// Points a step apart, from well before the start to the last reading.
+pub(super) struct Points {
+    pub(super) from_s: f64,
+    pub(super) step_s: f64,
+    pub(super) n: usize,
+}
+
+impl Points {
+    /// Time of a point [s].
+    pub(super) fn time_s(&self, point: usize) -> f64 {
+        self.from_s + self.step_s * point as f64
+    }
+
+    /// Where a time lies between the points.
+    pub(super) fn place(&self, time_s: f64) -> f64 {
+        (time_s - self.from_s) / self.step_s
+    }
+}
+
+impl<'a> Imposed<'a> {
+    /// What both channels read: roll [rad], then moment [N m].
+    pub fn readings(&self) -> Vec<f64> {
+        let remembered = self.remembered();
+        let is_through = channel::is_read_through(self.terms, 0);
+        let roll = is_through.then(|| self.instants(0, &remembered));
+        self.read(roll.as_deref(), &self.instants(1, &remembered))
+    }
+
+    /// The readings of what both channels see; the roll's instants only where an effect needs them.
+    pub(super) fn read(&self, roll: Option<&[Instant<'_>]>, moment: &[Instant<'_>]) -> Vec<f64> {
+        let mut readings: Vec<f64> = match roll {
+            Some(instants) => instants.iter().map(|i| i.roll_rad).collect(),
+            None => self.time_s[0].iter().map(|t| self.course.at(*t)[0]).collect(),
         };
-        let mut inertia = 1.0;
-        let mut moment = b1_per_s * rate + b3_s * rate.powi(3) + w * w * roll;
-        for Term { effect, values } in terms {
-            match effect.acts {
-                Acts::Moment(law) => moment -= law(&instant, values),
-                Acts::Inertia(law) => inertia += law(&instant, values),
-                _ => {}
-            }
-        }
-        moment -= lagging.iter().map(|lagged| lagged.at(time_s)).sum::<f64>();
-        instant.moment_n_m = scale * (inertia * acceleration + moment);
-        instant
-    };
-    let moment = moment_time_s
-        .iter()
-        .map(|&time_s| {
-            let instant = instant(time_s);
-            let read = |Term { effect, values }: &Term| match effect.acts {
-                Acts::Drive(law) => law(&instant, values),
-                _ => 0.0,
-            };
-            instant.moment_n_m + terms.iter().map(read).sum::<f64>()
-        })
-        .collect();
-    let mut roll: Vec<f64> = roll_time_s.iter().map(|&t| course.at(t)[0]).collect();
-    if terms.iter().any(|term| matches!(term.effect.acts, Acts::Roll(_))) {
-        let instants: Vec<Instant<'_>> = roll_time_s.iter().map(|&t| instant(t)).collect();
-        for Term { effect, values } in terms {
-            if let Acts::Roll(adds) = effect.acts {
-                let added = adds(&instants, values);
-                roll.iter_mut().zip(added).for_each(|(reading, more)| *reading += more);
-            }
-        }
+        channel::add(self.terms, 0, roll.unwrap_or_default(), &mut readings);
+        let mut moments: Vec<f64> = moment.iter().map(|i| i.moment_n_m).collect();
+        channel::add(self.terms, 1, moment, &mut moments);
+        readings.extend(moments);
+        readings
     }
-    (roll, moment)
-}
 
-/// The moment of an effect that remembers, over one period of a settled course.
-struct Lagged {
-    from_s: f64,
-    step_s: f64,
-    moment_per_s2: Vec<f64>,
-}
-
-impl Lagged {
-    /// Moment per unit inertia [rad/s2] by a parabola through the nearest three steps; the course
-    /// repeats, and so does what follows it.
-    fn at(&self, time_s: f64) -> f64 {
-        let n = self.moment_per_s2.len();
-        let place = ((time_s - self.from_s) / self.step_s).rem_euclid(n as f64);
-        let middle = place.round();
-        let x = place - middle;
-        let value = |k: f64| self.moment_per_s2[(k + n as f64) as usize % n];
-        let (a, b, c) = (value(middle - 1.0), value(middle), value(middle + 1.0));
-        b + 0.5 * x * (c - a) + 0.5 * x * x * (a - 2.0 * b + c)
-    }
-}
-
-fn lagged(run: &Circumstances, course: &Course, lag: &Lag, values: &[f64]) -> Lagged {
-    let period_s = std::f64::consts::TAU / course.numbers[N_COURSE - 1];
-    let step_s = period_s / STEPS_PER_PERIOD;
-    let instant = |time_s: f64| {
-        let [roll_rad, rate_rad_per_s, acceleration_rad_per_s2] = course.at(time_s);
+    /// The motion at a time, its moment nil.
+    pub(super) fn instant(&self, time_s: f64) -> Instant<'a> {
+        let [roll_rad, rate_rad_per_s, acceleration_rad_per_s2] = self.course.at(time_s);
         Instant {
             time_s,
             roll_rad,
             rate_rad_per_s,
             acceleration_rad_per_s2,
             moment_n_m: 0.0,
-            past: Past::Imposed(course),
-            run,
+            past: Past::Imposed(self.course),
+            run: self.run,
         }
-    };
-    let from_s = -PERIODS_BEFORE * period_s;
-    let n_steps = (PERIODS_BEFORE * STEPS_PER_PERIOD) as usize;
-    let mut state = [0.0; MOST_LAGS];
-    let mut moment_per_s2 = Vec::new();
-    for step in 0..n_steps + STEPS_PER_PERIOD as usize {
-        let time_s = from_s + step as f64 * step_s;
-        let [start, middle, end] = [0.0, 0.5, 1.0].map(|share| instant(time_s + share * step_s));
-        if step >= n_steps {
-            moment_per_s2.push((lag.moment)(&start, values, &state[..lag.n_states]));
-        }
-        let along = |slope: &[f64; MOST_LAGS], share: f64| -> [f64; MOST_LAGS] {
-            std::array::from_fn(|i| state[i] + share * step_s * slope[i])
-        };
-        let first = (lag.slope)(&start, values, &state);
-        let second = (lag.slope)(&middle, values, &along(&first, 0.5));
-        let third = (lag.slope)(&middle, values, &along(&second, 0.5));
-        let fourth = (lag.slope)(&end, values, &along(&third, 1.0));
-        let mean: [f64; MOST_LAGS] =
-            std::array::from_fn(|i| (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]) / 6.0);
-        state = along(&mean, 1.0);
     }
-    Lagged { from_s: 0.0, step_s, moment_per_s2 }
+
+    /// Moment of a unit of angular acceleration [kg m2], scale included.
+    pub(super) fn scale(&self) -> f64 {
+        let ratio = self.run.natural_rad_s / self.base.natural_rad_s;
+        self.base.log_scale.exp() * self.run.inertia_kg_m2 * ratio.powi(2)
+    }
+
+    /// Where effects that remember are followed.
+    pub(super) fn points(&self) -> Points {
+        let period_s = std::f64::consts::TAU / self.course.frequency_rad_s();
+        let step_s = period_s / STEPS_PER_PERIOD;
+        let from_s = -PERIODS_BEFORE * period_s;
+        let last_s = self.time_s.iter().filter_map(|t| t.last()).fold(0.0_f64, |a, b| a.max(*b));
+        Points { from_s, step_s, n: ((last_s - from_s) / step_s).ceil() as usize + 1 }
+    }
+
+    /// States of every term that remembers, at every point.
+    pub(super) fn remembered(&self) -> Vec<Vec<[f64; MOST_LAGS]>> {
+        let lags = |term: &Term| matches!(term.effect.acts, Acts::Lagging(_));
+        if !self.terms.iter().any(lags) {
+            return Vec::new();
+        }
+        let points = self.points();
+        let instants: Vec<Instant<'_>> =
+            (0..points.n).map(|k| self.instant(points.time_s(k))).collect();
+        let each = self.terms.iter().filter_map(|term| match term.effect.acts {
+            Acts::Lagging(lag) => Some(follow(&lag, &term.values, &instants, points.step_s)),
+            _ => None,
+        });
+        each.collect()
+    }
+
+    /// The motion with its moment at the times of a channel.
+    pub(super) fn instants(
+        &self,
+        channel: usize,
+        remembered: &[Vec<[f64; MOST_LAGS]>],
+    ) -> Vec<Instant<'a>> {
+        let points = self.points();
+        let at = |t: &f64| {
+            let mut instant = self.instant(*t);
+            instant.moment_n_m = self.scale() * self.sum(&instant, remembered, &points);
+            instant
+        };
+        self.time_s[channel].iter().map(at).collect()
+    }
+
+    /// Moment per unit inertia [rad/s2] that the course takes.
+    fn sum(
+        &self,
+        instant: &Instant<'_>,
+        remembered: &[Vec<[f64; MOST_LAGS]>],
+        points: &Points,
+    ) -> f64 {
+        let Base { natural_rad_s: w, b1_per_s, b3_s, .. } = *self.base;
+        let rate = instant.rate_rad_per_s;
+        let mut inertia = 1.0;
+        let mut sum = b1_per_s * rate + b3_s * rate.powi(3) + w * w * instant.roll_rad;
+        let mut lagging = remembered.iter();
+        for Term { effect, values } in self.terms {
+            match effect.acts {
+                Acts::Moment(law) | Acts::Echo(law, _) => sum -= (law.plain)(instant, values),
+                Acts::Inertia(law) => inertia += (law.plain)(instant, values),
+                Acts::Lagging(lag) => {
+                    let states = lagging.next().map_or([0.0; MOST_LAGS], |states| {
+                        between(states, points.place(instant.time_s))
+                    });
+                    sum -= (lag.moment.plain)(instant, values, &states);
+                }
+                Acts::Roll(_) | Acts::Drive(_) | Acts::Record(_) => {}
+            }
+        }
+        sum + inertia * instant.acceleration_rad_per_s2
+    }
 }

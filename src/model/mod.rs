@@ -4,14 +4,24 @@
 //! to the inertia `i`, or to what an instrument reads. An effect is one file in `effects/` and one
 //! line of the table there; nothing else knows its name.
 
+pub mod course;
 pub mod effect;
 pub mod effects;
 pub mod free;
+pub mod history;
 pub mod imposed;
 pub mod model_file;
+pub mod number;
 pub mod term;
+
+mod channel;
+mod free_changes;
+mod imposed_changes;
+mod lagging;
+mod linear;
+mod slopes;
 
 pub use effect::{
     Acts, Circumstances, Clip, Effect, Facts, Instant, Layer, Line, Parameter, Recurs, Scope, Seen,
 };
-pub use term::{Base, Term};
+pub use term::{Base, Columns, N_BASE, Term};

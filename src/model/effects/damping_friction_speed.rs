@@ -1,6 +1,7 @@
 //! Bearing friction that the resistance of the towed model presses up, with the speed squared.
 
-use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, each, under_way};
+use crate::model::effect::{Acts, Effect, Instant, Law, Layer, Parameter, Scope, each, under_way};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,11 +13,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: |_| each(&[0.02]),
     scope: Scope::Campaign,
     shows: under_way,
-    acts: Acts::Moment(law),
+    acts: Acts::Moment(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "mechanics: friction in proportion to the load",
 };
 
-fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
-    -p[0] * (i.run.froude / 0.4).powi(2) * (i.rate_rad_per_s / p[1]).tanh()
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    -p[0] * (i.rate_rad_per_s / p[1]).tanh() * f64::powi(i.run.froude / 0.4, 2)
 }

@@ -1,6 +1,9 @@
 //! The nonlinear part of the damping changes with speed.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, one_node, under_way};
+use crate::model::effect::{
+    Acts, Effect, Instant, Law, Layer, Parameter, Scope, one_node, under_way,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,7 +15,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Condition,
     shows: under_way,
-    acts: Acts::Moment(|i, p| -p[0] * (i.run.froude / 0.4).powi(2) * i.rate_rad_per_s.powi(3)),
+    acts: Acts::Moment(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "ITTC 7.5-02-07-04.5: eddies are washed away",
 };
+
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    -p[0] * i.rate_rad_per_s.powi(3) * f64::powi(i.run.froude / 0.4, 2)
+}

@@ -1,6 +1,9 @@
 //! Quadratic damping: eddies and bilge keels drag with the square of the rate.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
+use crate::model::effect::{
+    Acts, Effect, Instant, Law, Layer, Parameter, Scope, any_run, one_node,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,7 +15,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Condition,
     shows: any_run,
-    acts: Acts::Moment(|i, p| -p[0] * i.rate_rad_per_s * i.rate_rad_per_s.abs()),
+    acts: Acts::Moment(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "ITTC 7.5-02-07-04.5",
 };
+
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    -p[0] * i.rate_rad_per_s * i.rate_rad_per_s.abs()
+}

@@ -1,6 +1,7 @@
 //! The flow of the first swings is not yet that of a rolling model.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, decays, each};
+use crate::model::effect::{Acts, Effect, Instant, Law, Layer, Parameter, Scope, decays, each};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -15,7 +16,11 @@ pub(super) const EFFECT: Effect = Effect {
     },
     scope: Scope::Condition,
     shows: decays,
-    acts: Acts::Moment(|i, p| p[0] * i.run.b1_per_s * (-i.time_s / p[1]).exp() * i.rate_rad_per_s),
+    acts: Acts::Moment(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "van 't Veer & Fathi 2010; Zhao et al. 2016",
 };
+
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    p[0] * (N::from(-i.time_s) / p[1]).exp() * i.rate_rad_per_s * i.run.b1_per_s
+}

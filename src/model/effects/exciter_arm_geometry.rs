@@ -1,6 +1,7 @@
 //! The arm of the rod shortens with the roll and the moment is taken as if it did not.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, forced, one_node};
+use crate::model::effect::{Acts, Effect, Instant, Law, Layer, Parameter, Scope, forced, one_node};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,7 +13,12 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Campaign,
     shows: forced,
-    acts: Acts::Drive(|i, p| p[0] * i.moment_n_m * (1.0 / i.roll_rad.cos() - 1.0)),
+    acts: Acts::Drive(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "geometry of the rig",
 };
+
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    let (_, cos) = i.roll_rad.sin_cos();
+    p[0] * i.moment_n_m * (N::from(1.0) / cos - 1.0)
+}

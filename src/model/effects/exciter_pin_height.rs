@@ -1,6 +1,7 @@
 //! The pin joint lies above or below the roll axis.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, forced, one_node};
+use crate::model::effect::{Acts, Effect, Instant, Law, Layer, Parameter, Scope, forced, one_node};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,7 +13,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Campaign,
     shows: forced,
-    acts: Acts::Drive(|i, p| p[0] * i.moment_n_m * i.roll_rad),
+    acts: Acts::Drive(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "geometry of the rig",
 };
+
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    p[0] * i.moment_n_m * i.roll_rad
+}

@@ -1,6 +1,7 @@
 //! Play of the pin joint: the force rings whenever it changes sign.
 
-use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, forced};
+use crate::model::effect::{Acts, Effect, Instant, Law, Layer, Parameter, Scope, forced};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -15,22 +16,23 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: |_| [60.0, 100.0, 150.0, 220.0, 320.0].map(|ringing| vec![0.05, ringing]).to_vec(),
     scope: Scope::Campaign,
     shows: forced,
-    acts: Acts::Drive(law),
+    acts: Acts::Drive(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "geometry of the rig",
 };
 
-fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     let (w, rolling) = (i.run.natural_rad_s, i.run.rolling_rad_s);
     let inertia = i.run.inertia_kg_m2;
     // The moment of a sine tells by its growth how long ago it changed sign.
     let growth = inertia
-        * ((w * w - rolling * rolling) * i.rate_rad_per_s
-            + i.run.b1_per_s * i.acceleration_rad_per_s2);
-    let since_s = (rolling * i.moment_n_m / growth).atan() / rolling;
+        * ((w * w - rolling * rolling) * i.rate_rad_per_s.value()
+            + i.run.b1_per_s * i.acceleration_rad_per_s2.value());
+    let since_s = (rolling * i.moment_n_m.value() / growth).atan() / rolling;
     if since_s < 0.0 {
-        return 0.0;
+        return N::from(0.0);
     }
-    let ringing = (-since_s / p[1]).exp() * (p[2] * since_s).sin();
-    p[0] * inertia * w * w * i.run.amplitude_rad * growth.signum() * ringing
+    let (ringing, _) = (p[2] * since_s).sin_cos();
+    let size = inertia * w * w * i.run.amplitude_rad * growth.signum();
+    p[0] * (N::from(-since_s) / p[1]).exp() * ringing * size
 }

@@ -1,6 +1,7 @@
 //! The rod and what hangs on it are moved by the load cell as well.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, forced, one_node};
+use crate::model::effect::{Acts, Effect, Instant, Law, Layer, Parameter, Scope, forced, one_node};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,7 +13,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Campaign,
     shows: forced,
-    acts: Acts::Drive(|i, p| p[0] * i.run.inertia_kg_m2 * i.acceleration_rad_per_s2),
+    acts: Acts::Drive(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "mechanics",
 };
+
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    p[0] * i.acceleration_rad_per_s2 * i.run.inertia_kg_m2
+}

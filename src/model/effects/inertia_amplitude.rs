@@ -1,6 +1,9 @@
 //! Added inertia that changes with the roll angle.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
+use crate::model::effect::{
+    Acts, Effect, Instant, Law, Layer, Parameter, Scope, any_run, one_node,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,7 +15,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Condition,
     shows: any_run,
-    acts: Acts::Inertia(|i, p| p[0] * i.roll_rad.powi(2)),
+    acts: Acts::Inertia(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "Zhao et al. 2016",
 };
+
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    p[0] * i.roll_rad.powi(2)
+}

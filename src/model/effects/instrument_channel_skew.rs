@@ -1,6 +1,9 @@
 //! The roll is sampled or stamped later than the moment.
 
-use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, forced, one_node};
+use crate::model::effect::{
+    Acts, Effect, Instant, Layer, Parameter, Reading, Scope, forced, one_node,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,11 +15,15 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Campaign,
     shows: forced,
-    acts: Acts::Roll(|all, p| all.iter().map(|i| late(i, p[0])).collect()),
+    acts: Acts::Roll(Reading { plain: adds, sloped: adds }),
     always_equivalent: &[],
     reference: "multiplexed converters",
 };
 
-fn late(i: &Instant<'_>, tau_s: f64) -> f64 {
-    -tau_s * i.rate_rad_per_s + 0.5 * tau_s * tau_s * i.acceleration_rad_per_s2
+fn late<N: Number>(i: &Instant<'_, N>, tau_s: N) -> N {
+    -tau_s * i.rate_rad_per_s + tau_s * tau_s * i.acceleration_rad_per_s2 * 0.5
+}
+
+fn adds<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
+    all.iter().map(|i| late(i, p[0])).collect()
 }

@@ -1,6 +1,9 @@
 //! The clocks of roll and moment run at different rates.
 
-use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, forced, one_node};
+use crate::model::effect::{
+    Acts, Effect, Instant, Layer, Parameter, Reading, Scope, forced, one_node,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -15,12 +18,16 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Campaign,
     shows: forced,
-    acts: Acts::Roll(|all, p| all.iter().map(|i| late(i, p)).collect()),
+    acts: Acts::Roll(Reading { plain: adds, sloped: adds }),
     always_equivalent: &[],
     reference: "crystal data sheets",
 };
 
-fn late(i: &Instant<'_>, p: &[f64]) -> f64 {
+fn late<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     let late_s = p[0] * i.time_s + p[1];
-    -late_s * i.rate_rad_per_s + 0.5 * late_s * late_s * i.acceleration_rad_per_s2
+    -late_s * i.rate_rad_per_s + late_s * late_s * i.acceleration_rad_per_s2 * 0.5
+}
+
+fn adds<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
+    all.iter().map(|i| late(i, p)).collect()
 }

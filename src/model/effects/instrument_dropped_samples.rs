@@ -1,8 +1,9 @@
 //! Samples were lost and the time stamps do not tell.
 
 use crate::model::effect::{
-    Acts, Circumstances, Effect, Instant, Layer, Parameter, Scope, any_run,
+    Acts, Circumstances, Effect, Instant, Layer, Parameter, Reading, Scope, any_run,
 };
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -14,7 +15,7 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: onsets,
     scope: Scope::Run,
     shows: any_run,
-    acts: Acts::Roll(|all, p| all.iter().map(|i| ahead(i, p)).collect()),
+    acts: Acts::Roll(Reading { plain: adds, sloped: adds }),
     always_equivalent: &[],
     reference: "serial links without sample counters",
 };
@@ -26,9 +27,13 @@ fn onsets(run: &Circumstances) -> Vec<Vec<f64>> {
     (1..n).map(|k| vec![run.span_s * k as f64 / n as f64]).collect()
 }
 
-fn ahead(i: &Instant<'_>, p: &[f64]) -> f64 {
-    if i.time_s < p[1] {
-        return 0.0;
+fn ahead<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    if i.time_s < p[1].value() {
+        return N::from(0.0);
     }
-    p[0] * (i.rate_rad_per_s + 0.5 * p[0] * i.acceleration_rad_per_s2)
+    p[0] * (i.rate_rad_per_s + p[0] * i.acceleration_rad_per_s2 * 0.5)
+}
+
+fn adds<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
+    all.iter().map(|i| ahead(i, p)).collect()
 }

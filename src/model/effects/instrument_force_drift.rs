@@ -1,6 +1,9 @@
 //! The zero of the load cell creeps.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, one_node, with_moment};
+use crate::model::effect::{
+    Acts, Effect, Instant, Law, Layer, Parameter, Scope, one_node, with_moment,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -15,7 +18,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Campaign,
     shows: with_moment,
-    acts: Acts::Drive(|i, p| p[1] + p[0] * i.time_s / 20.0),
+    acts: Acts::Drive(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "HBM; OIML R60",
 };
+
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    p[1] + p[0] * i.time_s / 20.0
+}

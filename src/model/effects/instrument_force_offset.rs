@@ -1,6 +1,9 @@
 //! The load cell does not read nil without a force, or carries the rod.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, one_node, with_moment};
+use crate::model::effect::{
+    Acts, Effect, Instant, Law, Layer, Parameter, Scope, one_node, with_moment,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,7 +15,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Campaign,
     shows: with_moment,
-    acts: Acts::Drive(|_, p| p[0]),
+    acts: Acts::Drive(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "calibration; weight of the rod",
 };
+
+fn law<N: Number>(_: &Instant<'_, N>, p: &[N]) -> N {
+    p[0]
+}

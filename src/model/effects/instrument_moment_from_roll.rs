@@ -1,6 +1,9 @@
 //! The roll channel leaks into the moment channel.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, one_node, with_moment};
+use crate::model::effect::{
+    Acts, Effect, Instant, Law, Layer, Parameter, Scope, one_node, with_moment,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,7 +15,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Campaign,
     shows: with_moment,
-    acts: Acts::Drive(|i, p| p[0] * i.roll_rad),
+    acts: Acts::Drive(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "crosstalk of bridge and potentiometer",
 };
+
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    p[0] * i.roll_rad
+}

@@ -1,6 +1,9 @@
 //! Play between the model and its potentiometer.
 
-use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, any_run, one_node};
+use crate::model::effect::{
+    Acts, Effect, Instant, Layer, Parameter, Reading, Scope, any_run, one_node,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,20 +15,20 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Campaign,
     shows: any_run,
-    acts: Acts::Roll(play),
+    acts: Acts::Roll(Reading { plain: play, sloped: play }),
     always_equivalent: &[],
     reference: "python-control: friction and backlash",
 };
 
 /// The reading stays until the angle has crossed the play; it starts in contact.
-fn play(all: &[Instant<'_>], p: &[f64]) -> Vec<f64> {
+fn play<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
     let half = p[0];
     let Some(first) = all.first() else { return Vec::new() };
-    let mut reading = first.roll_rad - half * first.roll_rad.signum();
+    let mut reading = first.roll_rad - half * first.roll_rad.value().signum();
     let mut lost = Vec::with_capacity(all.len());
     for i in all {
         let (low, high) = (i.roll_rad - half.abs(), i.roll_rad + half.abs());
-        reading = reading.clamp(low, high);
+        reading = reading.max(low).min(high);
         lost.push(reading - i.roll_rad);
     }
     lost

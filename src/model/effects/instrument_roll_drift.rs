@@ -1,6 +1,9 @@
 //! The zero of the roll channel drifts.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
+use crate::model::effect::{
+    Acts, Effect, Instant, Layer, Parameter, Reading, Scope, any_run, one_node,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -15,7 +18,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Campaign,
     shows: any_run,
-    acts: Acts::Roll(|all, p| all.iter().map(|i| p[1] + p[0] * i.time_s / 20.0).collect()),
+    acts: Acts::Roll(Reading { plain: adds, sloped: adds }),
     always_equivalent: &[],
     reference: "sensor data sheets",
 };
+
+fn adds<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
+    all.iter().map(|i| p[1] + p[0] * i.time_s / 20.0).collect()
+}

@@ -1,6 +1,9 @@
 //! The moment channel leaks into the roll channel.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, forced, one_node};
+use crate::model::effect::{
+    Acts, Effect, Instant, Layer, Parameter, Reading, Scope, forced, one_node,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,7 +15,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Campaign,
     shows: forced,
-    acts: Acts::Roll(|all, p| all.iter().map(|i| p[0] * i.moment_n_m).collect()),
+    acts: Acts::Roll(Reading { plain: adds, sloped: adds }),
     always_equivalent: &[],
     reference: "crosstalk of bridge and potentiometer",
 };
+
+fn adds<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
+    all.iter().map(|i| p[0] * i.moment_n_m).collect()
+}

@@ -1,6 +1,9 @@
 //! A low-pass filter makes the roll channel lag.
 
-use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, any_run, one_node};
+use crate::model::effect::{
+    Acts, Effect, Instant, Layer, Parameter, Reading, Scope, any_run, one_node,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,13 +15,13 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Campaign,
     shows: any_run,
-    acts: Acts::Roll(lag),
+    acts: Acts::Roll(Reading { plain: lag, sloped: lag }),
     always_equivalent: &[],
     reference: "filter theory",
 };
 
 /// First-order lag of a course that is straight between samples.
-fn lag(all: &[Instant<'_>], p: &[f64]) -> Vec<f64> {
+fn lag<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
     let tau_s = p[0];
     let Some(first) = all.first() else { return Vec::new() };
     let mut behind = -tau_s * first.rate_rad_per_s;
@@ -26,7 +29,8 @@ fn lag(all: &[Instant<'_>], p: &[f64]) -> Vec<f64> {
     for pair in all.windows(2) {
         let step_s = pair[1].time_s - pair[0].time_s;
         let slope = (pair[1].roll_rad - pair[0].roll_rad) / step_s;
-        let fades = if tau_s > 0.0 { (-step_s / tau_s).exp() } else { 0.0 };
+        let fades =
+            if tau_s.value() > 0.0 { (N::from(-step_s) / tau_s).exp() } else { N::from(0.0) };
         behind = -tau_s * slope + (behind + tau_s * slope) * fades;
         lost.push(behind);
     }

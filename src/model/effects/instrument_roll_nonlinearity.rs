@@ -1,6 +1,9 @@
 //! The potentiometer errs by a fixed function of the angle.
 
-use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, any_run, each};
+use crate::model::effect::{
+    Acts, Effect, Instant, Layer, Parameter, Reading, Scope, any_run, each,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -15,12 +18,16 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: |_| each(&[0.14, 0.2, 0.28, 0.4]),
     scope: Scope::Campaign,
     shows: any_run,
-    acts: Acts::Roll(|all, p| all.iter().map(|i| error(i, p)).collect()),
+    acts: Acts::Roll(Reading { plain: adds, sloped: adds }),
     always_equivalent: &[],
     reference: "Bourns, Novotechnik: independent linearity",
 };
 
-fn error(i: &Instant<'_>, p: &[f64]) -> f64 {
-    let (sin, cos) = (std::f64::consts::TAU * i.roll_rad / p[2]).sin_cos();
+fn error<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    let (sin, cos) = (i.roll_rad / p[2] * std::f64::consts::TAU).sin_cos();
     p[0] * sin + p[1] * (cos - 1.0)
+}
+
+fn adds<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
+    all.iter().map(|i| error(i, p)).collect()
 }

@@ -1,6 +1,9 @@
 //! The roll channel does not read nil upright.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
+use crate::model::effect::{
+    Acts, Effect, Instant, Layer, Parameter, Reading, Scope, any_run, one_node,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,7 +15,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Campaign,
     shows: any_run,
-    acts: Acts::Roll(|all, p| vec![p[0]; all.len()]),
+    acts: Acts::Roll(Reading { plain: adds, sloped: adds }),
     always_equivalent: &["restoring.heel"],
     reference: "calibration",
 };
+
+fn adds<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
+    vec![p[0]; all.len()]
+}

@@ -1,6 +1,9 @@
 //! Cubic restoring of a hull whose sides are not those of a circle.
 
-use crate::model::effect::{Acts, Effect, Layer, Parameter, Scope, any_run, one_node};
+use crate::model::effect::{
+    Acts, Effect, Instant, Law, Layer, Parameter, Scope, any_run, one_node,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,7 +15,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Condition,
     shows: any_run,
-    acts: Acts::Moment(|i, p| -i.run.natural_rad_s.powi(2) * p[0] * i.roll_rad.powi(3)),
+    acts: Acts::Moment(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "wall-sided formula",
 };
+
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    -p[0] * i.roll_rad.powi(3) * f64::powi(i.run.natural_rad_s, 2)
+}

@@ -1,8 +1,9 @@
 //! Water inside the hull with a free surface.
 
 use crate::model::effect::{
-    Acts, Effect, Instant, Lag, Layer, MOST_LAGS, Parameter, Scope, any_run,
+    Acts, Effect, Instant, Lag, LagLaw, Layer, MOST_LAGS, Parameter, Scope, any_run,
 };
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -17,18 +18,22 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: |_| [0.45, 0.55, 0.65, 0.7, 0.75, 0.8, 0.9, 1.1].map(|share| vec![share, 0.05]).to_vec(),
     scope: Scope::Campaign,
     shows: any_run,
-    acts: Acts::Lagging(Lag { n_states: 2, slope, moment }),
+    acts: Acts::Lagging(Lag {
+        n_states: 2,
+        slope: LagLaw { plain: slope, sloped: slope },
+        moment: LagLaw { plain: moment, sloped: moment },
+    }),
     always_equivalent: &[],
     reference: "McTaggart 2011; Moaleji & Greig 2007",
 };
 
 /// Rise of the surface against the tank `psi + phi`, level at release, and the surface's rate.
-fn slope(i: &Instant<'_>, p: &[f64], z: &[f64]) -> [f64; MOST_LAGS] {
+fn slope<N: Number>(i: &Instant<'_, N>, p: &[N], z: &[N]) -> [N; MOST_LAGS] {
     let own_rad_s = p[1] * i.run.natural_rad_s;
     let rate = z[1];
-    [rate + i.rate_rad_per_s, -2.0 * p[2] * own_rad_s * rate - own_rad_s * own_rad_s * z[0]]
+    [rate + i.rate_rad_per_s, -p[2] * own_rad_s * rate * 2.0 - own_rad_s * own_rad_s * z[0]]
 }
 
-fn moment(i: &Instant<'_>, p: &[f64], z: &[f64]) -> f64 {
-    -i.run.natural_rad_s.powi(2) * p[0] * (z[0] - i.roll_rad)
+fn moment<N: Number>(i: &Instant<'_, N>, p: &[N], z: &[N]) -> N {
+    -p[0] * (z[0] - i.roll_rad) * f64::powi(i.run.natural_rad_s, 2)
 }

@@ -1,6 +1,9 @@
 //! Sinkage, trim and the wave along the hull change the metacentric height with speed.
 
-use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, one_node, under_way};
+use crate::model::effect::{
+    Acts, Effect, Instant, Law, Layer, Parameter, Scope, one_node, under_way,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,11 +15,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Condition,
     shows: under_way,
-    acts: Acts::Moment(law),
+    acts: Acts::Moment(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "ITTC 7.5-02-07-04.5",
 };
 
-fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
-    -i.run.natural_rad_s.powi(2) * p[0] * (i.run.froude / 0.4).powi(2) * i.roll_rad
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    -p[0] * i.roll_rad * (i.run.natural_rad_s * i.run.froude / 0.4).powi(2)
 }

@@ -2,8 +2,9 @@
 
 use crate::model::Base;
 use crate::model::effect::{
-    Acts, Circumstances, Effect, Instant, Layer, Parameter, Scope, one_node,
+    Acts, Circumstances, Effect, Instant, Law, Layer, Parameter, Scope, one_node,
 };
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -18,14 +19,14 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: one_node,
     scope: Scope::Run,
     shows: |run| run.n_runs >= 4,
-    acts: Acts::Moment(law),
+    acts: Acts::Moment(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "the seed paper itself: Table 2",
 };
 
-fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     let w = i.run.natural_rad_s;
-    -p[0] * i.run.b1_per_s * i.rate_rad_per_s - p[1] * w * w * i.roll_rad
+    -p[0] * i.rate_rad_per_s * i.run.b1_per_s - p[1] * i.roll_rad * (w * w)
 }
 
 /// The base equation that reads with this effect as `base` reads without.

@@ -1,8 +1,9 @@
 //! Sway, yaw or the towing frame give way and roll with the model.
 
 use crate::model::effect::{
-    Acts, Effect, Instant, Lag, Layer, MOST_LAGS, Parameter, Scope, any_run, each,
+    Acts, Effect, Instant, Lag, LagLaw, Layer, MOST_LAGS, Parameter, Scope, any_run, each,
 };
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -14,7 +15,11 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: |_| each(&[10.0, 16.0, 25.0, 38.0]),
     scope: Scope::Campaign,
     shows: any_run,
-    acts: Acts::Lagging(Lag { n_states: 2, slope, moment: |i, p, z| -p[0] * slope(i, p, z)[1] }),
+    acts: Acts::Lagging(Lag {
+        n_states: 2,
+        slope: LagLaw { plain: slope, sloped: slope },
+        moment: LagLaw { plain: moment, sloped: moment },
+    }),
     always_equivalent: &[],
     reference: "ITTC 7.5-02-07-04.5: captured or partly captured models",
 };
@@ -22,7 +27,11 @@ pub(super) const EFFECT: Effect = Effect {
 /// Damping ratio of the mode that gives way [-].
 const RATIO: f64 = 0.05;
 
-fn slope(i: &Instant<'_>, p: &[f64], z: &[f64]) -> [f64; MOST_LAGS] {
+fn slope<N: Number>(i: &Instant<'_, N>, p: &[N], z: &[N]) -> [N; MOST_LAGS] {
     let v = p[1];
-    [z[1], -2.0 * RATIO * v * z[1] - v * v * z[0] - i.acceleration_rad_per_s2]
+    [z[1], -v * z[1] * (2.0 * RATIO) - v * v * z[0] - i.acceleration_rad_per_s2]
+}
+
+fn moment<N: Number>(i: &Instant<'_, N>, p: &[N], z: &[N]) -> N {
+    -p[0] * slope(i, p, z)[1]
 }

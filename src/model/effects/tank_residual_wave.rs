@@ -1,6 +1,7 @@
 //! Waves of an earlier run still press on the model.
 
-use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, any_run, each};
+use crate::model::effect::{Acts, Effect, Instant, Law, Layer, Parameter, Scope, any_run, each};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -18,12 +19,12 @@ pub(super) const EFFECT: Effect = Effect {
     },
     scope: Scope::Run,
     shows: any_run,
-    acts: Acts::Moment(law),
+    acts: Acts::Moment(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "ITTC 7.5-02-07-02.1: waiting time",
 };
 
-fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     let (sin, cos) = (p[2] * i.time_s).sin_cos();
     p[0] * cos + p[1] * sin
 }

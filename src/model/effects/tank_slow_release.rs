@@ -1,6 +1,7 @@
 //! The hand or the hook lets go slowly.
 
-use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Scope, decays, each};
+use crate::model::effect::{Acts, Effect, Instant, Law, Layer, Parameter, Scope, decays, each};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -12,12 +13,12 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: |_| each(&[0.05, 0.1, 0.2]),
     scope: Scope::Campaign,
     shows: decays,
-    acts: Acts::Moment(law),
+    acts: Acts::Moment(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "Zhao et al. 2016",
 };
 
-fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     let held = i.run.natural_rad_s.powi(2) * i.run.initial_roll_rad;
-    p[0] * held * (-i.time_s / p[1]).exp()
+    p[0] * (N::from(-i.time_s) / p[1]).exp() * held
 }

@@ -1,8 +1,9 @@
 //! The carriage has not settled to its speed when the run begins.
 
 use crate::model::effect::{
-    Acts, Effect, Instant, Layer, Parameter, Scope, decays, each, under_way,
+    Acts, Effect, Instant, Law, Layer, Parameter, Scope, decays, each, under_way,
 };
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -14,7 +15,7 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: |_| each(&[1.0, 2.0, 4.0]),
     scope: Scope::Campaign,
     shows: |run| decays(run) && under_way(run),
-    acts: Acts::Moment(law),
+    acts: Acts::Moment(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "carriage logs",
 };
@@ -25,7 +26,7 @@ fn share_of_speed(froude: f64) -> f64 {
     grown / (1.0 + grown)
 }
 
-fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     let by_speed_per_s = i.run.b1_per_s * share_of_speed(i.run.froude);
-    -2.0 * p[0] * by_speed_per_s * (-i.time_s / p[1]).exp() * i.rate_rad_per_s
+    -p[0] * (N::from(-i.time_s) / p[1]).exp() * i.rate_rad_per_s * (2.0 * by_speed_per_s)
 }

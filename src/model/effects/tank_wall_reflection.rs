@@ -1,6 +1,9 @@
 //! Waves that the model made come back from the tank walls, the long ones first.
 
-use crate::model::effect::{Acts, Circumstances, Effect, Instant, Layer, Parameter, Scope, each};
+use crate::model::effect::{
+    Acts, Circumstances, Effect, Instant, Law, Layer, Parameter, Scope, each,
+};
+use crate::model::number::Number;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -15,7 +18,7 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: delays,
     scope: Scope::Campaign,
     shows: in_reach,
-    acts: Acts::Moment(law),
+    acts: Acts::Moment(Law { plain: law, sloped: law }),
     always_equivalent: &[],
     reference: "ITTC 7.5-02-07-02.1: tank interference; deep-water dispersion",
 };
@@ -50,12 +53,12 @@ const SPACING: f64 = 0.24;
 /// The echo of the roll rate as a complex number: the integral over the delay `s` of
 /// `sqrt(g/(4 pi D)) exp(i (g s^2/(4 D) - pi/4))` times the rate at `t - s`, with `td = 2 w D/g`;
 /// `w phi` is the rate's other component.
-fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
-    let (delay_s, w) = (p[2], i.run.natural_rad_s);
+fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    let (delay_s, w) = (p[2].value(), i.run.natural_rad_s);
     let width_s = (2.0 * delay_s / w).sqrt();
     let reach = f64::from(N_SIDE) * SPACING;
     if i.time_s < delay_s - reach * width_s {
-        return 0.0;
+        return N::from(0.0);
     }
     // The phase of the chirp is w s^2/(2 td), so it turns by a growing angle from tap to tap.
     let step_s = SPACING * width_s;
@@ -64,19 +67,19 @@ fn law(i: &Instant<'_>, p: &[f64]) -> f64 {
     let mut phase = rotation(0.5 * w * first_s * first_s / delay_s);
     let mut turn = rotation(w * first_s * step_s / delay_s + 0.5 * bend);
     let more = rotation(bend);
-    let (mut real, mut imaginary) = (0.0, 0.0);
+    let (mut real, mut imaginary) = (N::from(0.0), N::from(0.0));
     for tap in -N_SIDE..=N_SIDE {
         let at = f64::from(tap) / f64::from(N_SIDE + 1);
-        let [roll_rad, rate] = i.past.at(i.time_s - delay_s - f64::from(tap) * step_s);
+        let [roll_rad, rate] = i.ago(p[2] + f64::from(tap) * step_s);
         // A taper: frequencies far from those of the roll are not in the record.
         let weight = 1.0 - at * at;
-        real += weight * (phase[0] * rate - phase[1] * w * roll_rad);
-        imaginary += weight * (phase[1] * rate + phase[0] * w * roll_rad);
+        real = real + (rate * phase[0] - roll_rad * (phase[1] * w)) * weight;
+        imaginary = imaginary + (rate * phase[1] + roll_rad * (phase[0] * w)) * weight;
         phase = times(phase, turn);
         turn = times(turn, more);
     }
-    let echo = SPACING / std::f64::consts::PI.sqrt() * (p[0] * real + p[1] * imaginary);
-    (1.0 - outrun(i.run)).max(0.0) * echo
+    let size = SPACING / std::f64::consts::PI.sqrt() * (1.0 - outrun(i.run)).max(0.0);
+    (p[0] * real + p[1] * imaginary) * size
 }
 
 fn rotation(angle: f64) -> [f64; 2] {

@@ -1,0 +1,122 @@
+//! What the measuring chain makes of a motion, sample by sample, and of small changes of it.
+
+use std::array;
+
+use super::effect::{Acts, Instant};
+use super::number::{N_SLOPES, Sloped};
+use super::term::{N_BASE, Term};
+
+/// Change of roll, rate, acceleration and moment with one number.
+pub(super) type Tangent = [f64; 4];
+
+/// Whether an effect acts on what channel 0, the roll, or channel 1, the moment, reads.
+fn acts_on(term: &Term, channel: usize) -> bool {
+    match term.effect.acts {
+        Acts::Roll(_) => channel == 0,
+        Acts::Drive(_) => channel == 1,
+        _ => false,
+    }
+}
+
+/// Whether some effect acts on what a channel reads.
+pub(super) fn is_read_through(terms: &[Term], channel: usize) -> bool {
+    terms.iter().any(|term| acts_on(term, channel))
+}
+
+/// What an effect adds to the readings of its channel.
+fn added(term: &Term, values: &[f64], instants: &[Instant<'_>]) -> Vec<f64> {
+    match term.effect.acts {
+        Acts::Roll(reading) => (reading.plain)(instants, values),
+        Acts::Drive(law) => instants.iter().map(|i| (law.plain)(i, values)).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Adds what the effects on a channel add to its readings.
+pub(super) fn add(terms: &[Term], channel: usize, instants: &[Instant<'_>], readings: &mut [f64]) {
+    for term in terms.iter().filter(|term| acts_on(term, channel)) {
+        let added = added(term, &term.values, instants);
+        readings.iter_mut().zip(added).for_each(|(reading, more)| *reading += more);
+    }
+}
+
+/// Writes what candidates on a channel would add, per unit of each strength, into the last
+/// columns, from row `first`.
+pub(super) fn add_candidates(
+    candidates: &[Term],
+    channel: usize,
+    instants: &[Instant<'_>],
+    columns: &mut [Vec<f64>],
+    first: usize,
+) {
+    let n: usize = candidates.iter().map(|c| c.effect.strengths.len()).sum();
+    let mut column = columns.len() - n;
+    for candidate in candidates {
+        for (values, step) in candidate.nudged_each() {
+            if acts_on(candidate, channel) && (candidate.effect.shows)(instants[0].run) {
+                let added = added(candidate, &values, instants);
+                let rows = columns[column][first..].iter_mut();
+                rows.zip(added).for_each(|(row, more)| *row += more / step);
+            }
+            column += 1;
+        }
+    }
+}
+
+/// Adds what the effects on a channel make of changes of the motion and of their own parameters,
+/// a few columns at a time, from row `first`; `n_own` columns come before the base equation's.
+pub(super) fn add_tangents(
+    terms: &[Term],
+    n_own: usize,
+    channel: usize,
+    instants: &[Instant<'_>],
+    tangents: &[Option<Vec<Tangent>>],
+    columns: &mut [Vec<f64>],
+    first: usize,
+) {
+    for from in (0..columns.len()).step_by(N_SLOPES) {
+        let here = from..(from + N_SLOPES).min(columns.len());
+        let along = |value: f64, sample: usize, kind: usize| -> Sloped {
+            let slopes = array::from_fn(|lane| {
+                let tangent = tangents.get(from + lane).and_then(Option::as_ref);
+                tangent.map_or(0.0, |tangent| tangent[sample][kind])
+            });
+            Sloped { value, slopes }
+        };
+        let sloped: Vec<Instant<'_, Sloped>> = instants
+            .iter()
+            .enumerate()
+            .map(|(sample, i)| Instant {
+                time_s: i.time_s,
+                roll_rad: along(i.roll_rad, sample, 0),
+                rate_rad_per_s: along(i.rate_rad_per_s, sample, 1),
+                acceleration_rad_per_s2: along(i.acceleration_rad_per_s2, sample, 2),
+                moment_n_m: along(i.moment_n_m, sample, 3),
+                past: i.past,
+                run: i.run,
+            })
+            .collect();
+        let mut parameter = n_own + N_BASE;
+        for term in terms {
+            let values: Vec<Sloped> = (parameter..)
+                .zip(&term.values)
+                .map(|(column, value)| {
+                    let is_here = here.contains(&column);
+                    if is_here { Sloped::input(*value, column - from) } else { (*value).into() }
+                })
+                .collect();
+            parameter += term.values.len();
+            let added: Vec<Sloped> = match term.effect.acts {
+                Acts::Roll(reading) if channel == 0 => (reading.sloped)(&sloped, &values),
+                Acts::Drive(law) if channel == 1 => {
+                    sloped.iter().map(|i| (law.sloped)(i, &values)).collect()
+                }
+                _ => continue,
+            };
+            for column in here.clone() {
+                let rows = columns[column][first..].iter_mut();
+                rows.zip(&added).for_each(|(row, more)| *row += more.slopes[column - from]);
+            }
+        }
+    }
+}

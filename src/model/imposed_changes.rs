@@ -1,0 +1,254 @@
+//! What each number does to a forced run: to the course, and to the moment that it takes.
+
+use super::channel::{self, Tangent};
+use super::course::N_COURSE;
+use super::effect::{Acts, Instant, MOST_LAGS};
+use super::imposed::Imposed;
+use super::lagging::{follow, jacobian};
+use super::linear::{between, driven};
+use super::number::{Sloped, slope};
+use super::slopes;
+use super::term::{Columns, N_BASE, Term};
+
+/// Changes of the states of one term, column by column, at every point; nothing where still.
+type Lagged = Vec<Option<Vec<[f64; MOST_LAGS]>>>;
+
+/// All that a forced run's changes are made of.
+struct Changes<'a> {
+    imposed: &'a Imposed<'a>,
+    candidates: &'a [Term],
+    /// States of every term that remembers, at every point.
+    remembered: Vec<Vec<[f64; MOST_LAGS]>>,
+    /// Their changes.
+    lagged: Vec<Lagged>,
+    /// States of every candidate that remembers.
+    followed: Vec<Vec<[f64; MOST_LAGS]>>,
+    /// Candidates with each strength moved a little in turn, and by how much.
+    nudged: Vec<Vec<(Vec<f64>, f64)>>,
+    n_columns: usize,
+}
+
+impl Imposed<'_> {
+    /// What both channels read, with what each number does to it: course, base equation,
+    /// parameters of the terms, strengths of the candidates.
+    pub fn columns(&self, candidates: &[Term]) -> Columns {
+        let changes = Changes::new(self, candidates);
+        let is_through = [0, 1].map(|c| channel::is_read_through(self.terms, c));
+        let needs_roll = is_through[0] || channel::is_read_through(candidates, 0);
+        let roll = needs_roll.then(|| self.instants(0, &changes.remembered));
+        let moment = self.instants(1, &changes.remembered);
+        let here = self.read(roll.as_deref(), &moment);
+        let n_roll = self.time_s[0].len();
+        let mut columns = vec![vec![0.0; here.len()]; changes.n_columns];
+        if !is_through[0] {
+            for (sample, t) in self.time_s[0].iter().enumerate() {
+                let all = self.course.changes(*t);
+                (0..N_COURSE).for_each(|j| columns[j][sample] = all[j][0]);
+            }
+        }
+        for (c, instants) in [roll.as_deref().unwrap_or_default(), &moment[..]].iter().enumerate() {
+            let (first, kind) = if c == 0 { (0, 0) } else { (n_roll, 3) };
+            let mut tangents: Vec<Option<Vec<Tangent>>> = Vec::new();
+            if is_through[c] {
+                tangents = vec![Some(vec![[0.0; 4]; instants.len()]); changes.n_columns];
+            }
+            if is_through[c] || c == 1 {
+                changes.each(instants, &mut |column, sample, tangent| {
+                    columns[column][first + sample] = tangent[kind];
+                    if let Some(Some(kept)) = tangents.get_mut(column) {
+                        kept[sample] = tangent;
+                    }
+                });
+            }
+            if is_through[c] {
+                let terms = self.terms;
+                channel::add_tangents(terms, N_COURSE, c, instants, &tangents, &mut columns, first);
+            }
+            if !instants.is_empty() {
+                channel::add_candidates(candidates, c, instants, &mut columns, first);
+            }
+        }
+        Columns { here, columns }
+    }
+}
+
+impl<'a> Changes<'a> {
+    fn new(imposed: &'a Imposed<'a>, candidates: &'a [Term]) -> Self {
+        let remembered = imposed.remembered();
+        let n_parameters: usize = imposed.terms.iter().map(|term| term.values.len()).sum();
+        let n_strengths: usize = candidates.iter().map(|c| c.effect.strengths.len()).sum();
+        let n_columns = N_COURSE + N_BASE + n_parameters + n_strengths;
+        let lags = |term: &&Term| matches!(term.effect.acts, Acts::Lagging(_));
+        let shown = |term: &&Term| {
+            matches!(term.effect.acts, Acts::Lagging(_)) && (term.effect.shows)(imposed.run)
+        };
+        let mut all = Self {
+            imposed,
+            candidates,
+            remembered,
+            lagged: Vec::new(),
+            followed: Vec::new(),
+            nudged: candidates.iter().map(Term::nudged_each).collect(),
+            n_columns,
+        };
+        if !imposed.terms.iter().any(|term| lags(&term)) && !candidates.iter().any(|c| shown(&c)) {
+            return all;
+        }
+        let points = imposed.points();
+        let instants: Vec<Instant<'_>> =
+            (0..points.n).map(|k| imposed.instant(points.time_s(k))).collect();
+        all.lagged = all.lags_changed(&instants);
+        let followed = candidates.iter().filter(shown).map(|term| match term.effect.acts {
+            Acts::Lagging(lag) => follow(&lag, &term.values, &instants, points.step_s),
+            _ => Vec::new(),
+        });
+        all.followed = followed.collect();
+        all
+    }
+
+    /// Changes of the states of every term that remembers.
+    fn lags_changed(&self, instants: &[Instant<'_>]) -> Vec<Lagged> {
+        if self.remembered.is_empty() {
+            return Vec::new();
+        }
+        let step_s = self.imposed.points().step_s;
+        let courses: Vec<[[f64; 3]; N_COURSE]> =
+            instants.iter().map(|i| self.imposed.course.changes(i.time_s)).collect();
+        let mut first = N_COURSE + N_BASE;
+        let mut all = Vec::new();
+        for Term { effect, values } in self.imposed.terms {
+            let own = first..first + values.len();
+            first = own.end;
+            let Acts::Lagging(lag) = effect.acts else { continue };
+            let states = &self.remembered[all.len()];
+            let rows: Vec<[Sloped; MOST_LAGS]> = instants
+                .iter()
+                .zip(states)
+                .map(|(i, states)| slopes::of_lag(&lag, &slopes::inputs(i), values, states).0)
+                .collect();
+            let jacobian = jacobian(&rows[0]);
+            let lagged = (0..self.n_columns).map(|column| {
+                let forcing = |k: usize| -> [f64; MOST_LAGS] {
+                    rows[k].map(|row| match column {
+                        j if j < N_COURSE => along(&row, &courses[k][j]),
+                        j => row.slopes[slope::PARAMETER + j - own.start],
+                    })
+                };
+                (column < N_COURSE || own.contains(&column))
+                    .then(|| driven(&jacobian, forcing, rows.len(), step_s))
+            });
+            all.push(lagged.collect());
+        }
+        all
+    }
+
+    /// The change with every column at every instant.
+    fn each(&self, instants: &[Instant<'_>], tell: &mut dyn FnMut(usize, usize, Tangent)) {
+        let imposed = self.imposed;
+        let (w, b1, b3) = (imposed.base.natural_rad_s, imposed.base.b1_per_s, imposed.base.b3_s);
+        let (scale, points) = (imposed.scale(), imposed.points());
+        let mut sums = vec![0.0; self.n_columns];
+        for (sample, instant) in instants.iter().enumerate() {
+            let (roll, rate) = (instant.roll_rad, instant.rate_rad_per_s);
+            let acceleration = instant.acceleration_rad_per_s2;
+            sums.fill(0.0);
+            let course = imposed.course.changes(instant.time_s);
+            let sloped = slopes::inputs(instant);
+            let mut whole = [w * w, b1 + 3.0 * b3 * rate * rate, 1.0];
+            let (mut first, mut lag_place) = (N_COURSE + N_BASE, 0);
+            for Term { effect, values } in imposed.terms {
+                let own = first..first + values.len();
+                first = own.end;
+                let (of, by) = match effect.acts {
+                    Acts::Moment(law) | Acts::Echo(law, _) => {
+                        (slopes::of_law(&law, &sloped, values), -1.0)
+                    }
+                    Acts::Inertia(law) => {
+                        let of = slopes::of_law(&law, &sloped, values);
+                        whole[2] += of.value;
+                        (of, acceleration)
+                    }
+                    Acts::Lagging(lag) => {
+                        let place = points.place(instant.time_s);
+                        let states = between(&self.remembered[lag_place], place);
+                        let (_, of) = slopes::of_lag(&lag, &sloped, values, &states);
+                        for (sum, lagged) in sums.iter_mut().zip(&self.lagged[lag_place]) {
+                            let change = lagged.as_ref().map(|points| between(points, place));
+                            for (k, change) in change.iter().flatten().enumerate() {
+                                *sum -= of.slopes[slope::REMEMBERED + k] * change;
+                            }
+                        }
+                        lag_place += 1;
+                        (of, -1.0)
+                    }
+                    Acts::Roll(_) | Acts::Drive(_) | Acts::Record(_) => continue,
+                };
+                let motion = [slope::ROLL, slope::RATE, slope::ACCELERATION];
+                whole.iter_mut().zip(motion).for_each(|(whole, k)| *whole += by * of.slopes[k]);
+                for (k, column) in own.enumerate() {
+                    sums[column] += by * of.slopes[slope::PARAMETER + k];
+                }
+                if let Acts::Echo(_, delay) = effect.acts {
+                    let earlier = imposed.course.changes(instant.time_s - values[delay]);
+                    for (sum, change) in sums.iter_mut().zip(&earlier) {
+                        *sum += by
+                            * (of.slopes[slope::REMEMBERED] * change[0]
+                                + of.slopes[slope::REMEMBERED + 1] * change[1]);
+                    }
+                }
+            }
+            for (sum, change) in sums.iter_mut().zip(&course) {
+                *sum += whole[0] * change[0] + whole[1] * change[1] + whole[2] * change[2];
+            }
+            let all = instant.moment_n_m / scale;
+            sums[N_COURSE..N_COURSE + N_BASE].copy_from_slice(&[
+                2.0 * (w * roll - all / w),
+                rate,
+                rate.powi(3),
+                all,
+            ]);
+            self.push(instant, &mut sums[first..]);
+            for (column, sum) in sums.iter().enumerate() {
+                let [roll, rate, acceleration] = course.get(column).copied().unwrap_or_default();
+                tell(column, sample, [roll, rate, acceleration, scale * sum]);
+            }
+        }
+    }
+
+    /// What each candidate strength does to the moment per unit inertia.
+    fn push(&self, instant: &Instant<'_>, sums: &mut [f64]) {
+        let mut next = 0;
+        let mut followed = self.followed.iter();
+        for (candidate, nudged) in self.candidates.iter().zip(&self.nudged) {
+            let shows = (candidate.effect.shows)(instant.run);
+            let states = match candidate.effect.acts {
+                Acts::Lagging(_) if shows => followed.next().map_or([0.0; MOST_LAGS], |states| {
+                    between(states, self.imposed.points().place(instant.time_s))
+                }),
+                _ => [0.0; MOST_LAGS],
+            };
+            for (values, by) in nudged {
+                if shows {
+                    sums[next] += match candidate.effect.acts {
+                        Acts::Moment(law) | Acts::Echo(law, _) => {
+                            -(law.plain)(instant, values) / by
+                        }
+                        Acts::Inertia(law) => {
+                            instant.acceleration_rad_per_s2 * (law.plain)(instant, values) / by
+                        }
+                        Acts::Lagging(lag) => -(lag.moment.plain)(instant, values, &states) / by,
+                        Acts::Roll(_) | Acts::Drive(_) | Acts::Record(_) => 0.0,
+                    };
+                }
+                next += 1;
+            }
+        }
+    }
+}
+
+/// What a change of the motion does to a number of known slopes.
+fn along(of: &Sloped, motion: &[f64; 3]) -> f64 {
+    of.slopes[slope::ROLL] * motion[0]
+        + of.slopes[slope::RATE] * motion[1]
+        + of.slopes[slope::ACCELERATION] * motion[2]
+}
