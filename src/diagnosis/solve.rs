@@ -249,6 +249,23 @@ pub(super) fn moved(
     next
 }
 
+/// The fit with every run's own numbers at their best, those of the campaign as they are.
+pub(super) fn followed(
+    survey: &Survey,
+    fit: &Fit,
+    summaries: &[Summary],
+    scatter: &Scatter,
+) -> Fit {
+    let joint = Joint::new(survey, fit, summaries);
+    let (marginals, _) = joint.gathered(scatter);
+    let mut next = fit.clone();
+    for (run, (summary, marginal)) in summaries.iter().zip(&marginals).enumerate() {
+        let still = vec![0.0; joint.places[run].len()];
+        next.states[run] = moved_state(survey, fit, run, summary, marginal, &still, 1.0);
+    }
+    next
+}
+
 /// The parameters of the effects after a step.
 fn moved_extensions(fit: &Fit, layout: &Layout, steps: &[f64]) -> Vec<Extension> {
     let mut extensions = fit.extensions.clone();

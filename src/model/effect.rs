@@ -224,6 +224,20 @@ pub struct Law {
     pub sloped: fn(&Instant<'_, Sloped>, &[Sloped]) -> Sloped,
 }
 
+/// Share that the motion some time ago has in a moment now.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tap {
+    /// How long ago [s].
+    pub delay_s: f64,
+    /// Moment per unit inertia and roll [1/s2].
+    pub of_roll: f64,
+    /// Moment per unit inertia and roll rate [1/s].
+    pub of_rate: f64,
+}
+
+/// The shares that an echo is made of, the same all along a run.
+pub type Taps = fn(&Circumstances, &[f64]) -> Vec<Tap>;
+
 /// What a channel adds to all of a record's instants, in order of time.
 #[derive(Debug, Clone, Copy)]
 pub struct Reading {
@@ -261,8 +275,8 @@ pub const MOST_LAGS: usize = 2;
 pub enum Acts {
     /// Moment per unit inertia [rad/s2] on the right-hand side.
     Moment(Law),
-    /// The same of the roll and its rate some time ago: a parameter is the delay [s].
-    Echo(Law, usize),
+    /// The same of the roll and its rate at earlier times, with the weights of these.
+    Echo(Law, Taps),
     /// Share added to the inertia [-].
     Inertia(Law),
     /// Moment of states that follow the motion.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::effect::{Acts, Instant};
+use super::effect::{Acts, Instant, Tap};
 use super::free::{Decay, LEAST_INERTIA, N_START, Path};
 use super::history::History;
 use super::lagging::follow;
@@ -23,10 +23,8 @@ pub(super) struct Changes<const N: usize> {
     n_forced: usize,
     /// What these do to the slopes, point by point.
     forcing: Vec<[f64; N]>,
-    /// Delays [s] of the terms that look back.
-    delays_s: Vec<f64>,
-    /// What roll and rate then do to the acceleration now, point by point.
-    echoes: Vec<[f64; 2]>,
+    /// What the motion some time ago does to the acceleration now.
+    taps: Vec<Tap>,
     /// What each candidate strength does to the acceleration; nothing where it does not move it.
     candidates: Vec<Option<Vec<f64>>>,
 }
@@ -42,17 +40,13 @@ impl<const N: usize> Changes<N> {
     pub(super) fn new(decay: &Decay<'_>, path: &Path<N>, candidates: &[Term]) -> Self {
         let (step_s, n_points) = (path.step_s, path.points.len());
         let n_forced = N_MOVING + decay.terms.iter().map(|term| term.values.len()).sum::<usize>();
-        let delays_s: Vec<f64> = decay
-            .terms
-            .iter()
-            .filter_map(|term| match term.effect.acts {
-                Acts::Echo(_, delay) => Some(term.values[delay]),
-                _ => None,
-            })
-            .collect();
+        let echoes = decay.terms.iter().filter_map(|term| match term.effect.acts {
+            Acts::Echo(_, taps) => Some(taps(decay.run, &term.values)),
+            _ => None,
+        });
+        let taps: Vec<Tap> = echoes.flatten().collect();
         let mut jacobians = Vec::with_capacity(n_points);
         let mut forcing = vec![[0.0; N]; n_points * n_forced];
-        let mut echoes = vec![[0.0; 2]; n_points * delays_s.len()];
         let mut quotients = Vec::with_capacity(n_points);
         let at = |k: usize| {
             let state = &path.points[k];
@@ -62,7 +56,6 @@ impl<const N: usize> Changes<N> {
             let mut about = About {
                 jacobian: [[0.0; N]; N],
                 forcing: &mut forcing[k * n_forced..(k + 1) * n_forced],
-                echoes: &mut echoes[k * delays_s.len()..(k + 1) * delays_s.len()],
             };
             quotients.push(about.fill(decay, &at(k), state));
             jacobians.push(about.jacobian);
@@ -79,7 +72,7 @@ impl<const N: usize> Changes<N> {
             .iter()
             .flat_map(|term| pushes(term, &instants, &quotients, step_s))
             .collect();
-        Self { step_s, jacobians, transitions, n_forced, forcing, delays_s, echoes, candidates }
+        Self { step_s, jacobians, transitions, n_forced, forcing, taps, candidates }
     }
 
     /// Number of columns: start, base, parameters of the terms, candidates.
@@ -129,12 +122,11 @@ impl<const N: usize> Changes<N> {
         change.clear();
         let at = |point: usize, change: &History| {
             let mut forcing = forcing(point);
-            for (e, delay_s) in self.delays_s.iter().enumerate() {
-                let time_s = self.step_s * point as f64 - delay_s;
+            for tap in &self.taps {
+                let time_s = self.step_s * point as f64 - tap.delay_s;
                 if time_s > 0.0 {
                     let [roll, rate, _] = change.motion(time_s);
-                    let by = self.echoes[point * self.delays_s.len() + e];
-                    forcing[1] += by[0] * roll + by[1] * rate;
+                    forcing[1] += tap.of_roll * roll + tap.of_rate * rate;
                 }
             }
             forcing
@@ -157,7 +149,6 @@ impl<const N: usize> Changes<N> {
 struct About<'p, const N: usize> {
     jacobian: Matrix<N>,
     forcing: &'p mut [[f64; N]],
-    echoes: &'p mut [[f64; 2]],
 }
 
 /// What roll, rate and the numbers of the base equation do to its acceleration.
@@ -179,7 +170,7 @@ impl<const N: usize> About<'_, N> {
         (0..N_MOVING).for_each(|k| self.forcing[k][1] = of_base.numbers[k]);
         let sloped = slopes::inputs(instant);
         let (mut moment, mut inertia) = (instant.acceleration_rad_per_s2, 1.0);
-        let (mut first, mut lag_state, mut echo) = (N_MOVING, N_START, 0);
+        let (mut first, mut lag_state) = (N_MOVING, N_START);
         for Term { effect, values } in decay.terms {
             let columns = first..first + values.len();
             first = columns.end;
@@ -188,11 +179,6 @@ impl<const N: usize> About<'_, N> {
                     let of = slopes::of_law(&law, &sloped, values);
                     moment += of.value;
                     self.enter(1, &of, 1.0, &of_base, columns);
-                    if matches!(effect.acts, Acts::Echo(..)) {
-                        self.echoes[echo] =
-                            [of.slopes[slope::REMEMBERED], of.slopes[slope::REMEMBERED + 1]];
-                        echo += 1;
-                    }
                 }
                 Acts::Inertia(law) => inertia += (law.plain)(instant, values),
                 Acts::Lagging(lag) if lag_state + lag.n_states <= N => {
@@ -218,7 +204,6 @@ impl<const N: usize> About<'_, N> {
         }
         self.jacobian[1].iter_mut().for_each(|v| *v /= inertia);
         self.forcing.iter_mut().for_each(|column| column[1] /= inertia);
-        self.echoes.iter_mut().for_each(|by| *by = by.map(|v| v / inertia));
         Quotient { acceleration, inertia }
     }
 

@@ -14,7 +14,7 @@ pub mod slope {
     pub const RATE: usize = 1;
     /// Roll acceleration; of a reading, where no effect looks at both, the true moment.
     pub const ACCELERATION: usize = 2;
-    /// Two states of an effect that remembers, or roll and rate at an earlier time.
+    /// Two states of an effect that remembers.
     pub const REMEMBERED: usize = 3;
     /// First parameter.
     pub const PARAMETER: usize = 5;
@@ -154,8 +154,7 @@ impl Number for Sloped {
     }
 
     fn earlier(self, [roll, rate, acceleration]: [f64; 3]) -> [Self; 2] {
-        let here = |place, value, slope| Self::input(value, place) + self.chain(0.0, slope);
-        [here(slope::REMEMBERED, roll, rate), here(slope::REMEMBERED + 1, rate, acceleration)]
+        [self.chain(roll, rate), self.chain(rate, acceleration)]
     }
 }
 
