@@ -100,6 +100,8 @@ pub(super) struct Summary {
     pub(super) eliminated: Eliminated,
     /// The strengths of each candidate beside these.
     pub(super) candidates: Vec<Side>,
+    /// Twice the negative logarithm of the likelihood where the run stands, up to a constant.
+    pub(super) misfit: f64,
     /// What the run's own numbers would gain in misfit alone.
     pub(super) own_gain: f64,
 }
@@ -109,7 +111,7 @@ impl Summary {
     pub(super) fn emptied(&self) -> Self {
         let mut empty = self.clone();
         empty.eliminated.rest = Products::zero(self.eliminated.rest.n());
-        empty.own_gain = 0.0;
+        (empty.misfit, empty.own_gain) = (0.0, 0.0);
         empty
     }
 
@@ -158,9 +160,9 @@ pub(super) fn summarise(
     products.add(n_own - 1, n_own - 1, precision);
     products.add(n_own - 1, last, -precision * offset);
     products.add(last, last, precision * offset * offset);
-    let before = products.at(last, last);
+    let misfit = products.at(last, last);
     let eliminated = products.eliminate(n_own);
-    let own_gain = before - eliminated.rest.at(last - n_own, last - n_own);
+    let own_gain = misfit - eliminated.rest.at(last - n_own, last - n_own);
     let mut next = 0;
     let candidates = candidates.iter().map(|candidate| {
         let first = next;
@@ -168,7 +170,7 @@ pub(super) fn summarise(
         eliminated.beside(&Side::of(&tried[first..next], known))
     });
     let candidates = candidates.collect();
-    Summary { eliminated, candidates, own_gain }
+    Summary { eliminated, candidates, misfit, own_gain }
 }
 
 /// Twice the negative logarithm of the likelihood, noise given, up to a constant.

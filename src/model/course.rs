@@ -36,6 +36,16 @@ impl Course {
         motion
     }
 
+    /// Roll, rate and acceleration from what each number does to them: they are linear in all but
+    /// the frequency.
+    pub(super) fn motion(&self, changes: &[[f64; 3]; N_COURSE]) -> [f64; 3] {
+        let mut motion = [0.0; 3];
+        for (number, change) in self.numbers.iter().zip(&changes[..N_COURSE - 1]) {
+            motion.iter_mut().zip(change).for_each(|(motion, change)| *motion += number * change);
+        }
+        motion
+    }
+
     /// What each number does to roll, rate and acceleration at a time [s].
     pub(super) fn changes(&self, time_s: f64) -> [[f64; 3]; N_COURSE] {
         let w = self.frequency_rad_s();

@@ -34,15 +34,21 @@ pub(super) struct Points {
 }
 
 impl Points {
-    /// Time of a point [s].
-    pub(super) fn time_s(&self, point: usize) -> f64 {
-        self.from_s + self.step_s * point as f64
+    /// Times of the points [s].
+    pub(super) fn times_s(&self) -> impl Iterator<Item = f64> {
+        (0..self.n).map(|point| self.from_s + self.step_s * point as f64)
     }
 
     /// Where a time lies between the points.
     pub(super) fn place(&self, time_s: f64) -> f64 {
         (time_s - self.from_s) / self.step_s
     }
+}
+
+/// States of every term that remembers, at every point.
+pub(super) struct Remembered {
+    pub(super) points: Points,
+    pub(super) states: Vec<Vec<[f64; MOST_LAGS]>>,
 }
 
 impl<'a> Imposed<'a> {
@@ -68,8 +74,8 @@ impl<'a> Imposed<'a> {
     }
 
     /// The motion at a time, its moment nil.
-    pub(super) fn instant(&self, time_s: f64) -> Instant<'a> {
-        let [roll_rad, rate_rad_per_s, acceleration_rad_per_s2] = self.course.at(time_s);
+    pub(super) fn instant(&self, time_s: f64, motion: [f64; 3]) -> Instant<'a> {
+        let [roll_rad, rate_rad_per_s, acceleration_rad_per_s2] = motion;
         Instant {
             time_s,
             roll_rad,
@@ -88,7 +94,7 @@ impl<'a> Imposed<'a> {
     }
 
     /// Where effects that remember are followed.
-    pub(super) fn points(&self) -> Points {
+    fn points(&self) -> Points {
         let period_s = std::f64::consts::TAU / self.course.frequency_rad_s();
         let step_s = period_s / STEPS_PER_PERIOD;
         let from_s = -PERIODS_BEFORE * period_s;
@@ -96,56 +102,55 @@ impl<'a> Imposed<'a> {
         Points { from_s, step_s, n: ((last_s - from_s) / step_s).ceil() as usize + 1 }
     }
 
-    /// States of every term that remembers, at every point.
-    pub(super) fn remembered(&self) -> Vec<Vec<[f64; MOST_LAGS]>> {
+    /// States of every term that remembers.
+    pub(super) fn remembered(&self) -> Remembered {
+        let points = self.points();
         let lags = |term: &Term| matches!(term.effect.acts, Acts::Lagging(_));
         if !self.terms.iter().any(lags) {
-            return Vec::new();
+            return Remembered { points, states: Vec::new() };
         }
-        let points = self.points();
         let instants: Vec<Instant<'_>> =
-            (0..points.n).map(|k| self.instant(points.time_s(k))).collect();
+            points.times_s().map(|t| self.instant(t, self.course.at(t))).collect();
         let each = self.terms.iter().filter_map(|term| match term.effect.acts {
             Acts::Lagging(lag) => Some(follow(&lag, &term.values, &instants, points.step_s)),
             _ => None,
         });
-        each.collect()
+        let states = each.collect();
+        Remembered { points, states }
     }
 
     /// The motion with its moment at the times of a channel.
-    pub(super) fn instants(
+    fn instants(&self, channel: usize, remembered: &Remembered) -> Vec<Instant<'a>> {
+        let times = self.time_s[channel].iter();
+        times.map(|t| self.with_moment(*t, self.course.at(*t), remembered)).collect()
+    }
+
+    /// The motion at a time with the moment that it takes.
+    pub(super) fn with_moment(
         &self,
-        channel: usize,
-        remembered: &[Vec<[f64; MOST_LAGS]>],
-    ) -> Vec<Instant<'a>> {
-        let points = self.points();
-        let at = |t: &f64| {
-            let mut instant = self.instant(*t);
-            instant.moment_n_m = self.scale() * self.sum(&instant, remembered, &points);
-            instant
-        };
-        self.time_s[channel].iter().map(at).collect()
+        time_s: f64,
+        motion: [f64; 3],
+        remembered: &Remembered,
+    ) -> Instant<'a> {
+        let mut instant = self.instant(time_s, motion);
+        instant.moment_n_m = self.scale() * self.sum(&instant, remembered);
+        instant
     }
 
     /// Moment per unit inertia [rad/s2] that the course takes.
-    fn sum(
-        &self,
-        instant: &Instant<'_>,
-        remembered: &[Vec<[f64; MOST_LAGS]>],
-        points: &Points,
-    ) -> f64 {
+    fn sum(&self, instant: &Instant<'_>, remembered: &Remembered) -> f64 {
         let Base { natural_rad_s: w, b1_per_s, b3_s, .. } = *self.base;
         let rate = instant.rate_rad_per_s;
         let mut inertia = 1.0;
         let mut sum = b1_per_s * rate + b3_s * rate.powi(3) + w * w * instant.roll_rad;
-        let mut lagging = remembered.iter();
+        let mut lagging = remembered.states.iter();
         for Term { effect, values } in self.terms {
             match effect.acts {
                 Acts::Moment(law) | Acts::Echo(law, _) => sum -= (law.plain)(instant, values),
                 Acts::Inertia(law) => inertia += (law.plain)(instant, values),
                 Acts::Lagging(lag) => {
                     let states = lagging.next().map_or([0.0; MOST_LAGS], |states| {
-                        between(states, points.place(instant.time_s))
+                        between(states, remembered.points.place(instant.time_s))
                     });
                     sum -= (lag.moment.plain)(instant, values, &states);
                 }

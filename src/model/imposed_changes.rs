@@ -3,7 +3,7 @@
 use super::channel::{self, Tangent};
 use super::course::N_COURSE;
 use super::effect::{Acts, Instant, MOST_LAGS};
-use super::imposed::Imposed;
+use super::imposed::{Imposed, Remembered};
 use super::lagging::{follow, jacobian};
 use super::linear::{between, driven};
 use super::number::{Sloped, slope};
@@ -13,12 +13,15 @@ use super::term::{Columns, N_BASE, Term};
 /// Changes of the states of one term, column by column, at every point; nothing where still.
 type Lagged = Vec<Option<Vec<[f64; MOST_LAGS]>>>;
 
+/// What each number of a course does to roll, rate and acceleration at one instant.
+type CourseChanges = [[f64; 3]; N_COURSE];
+
 /// All that a forced run's changes are made of.
 struct Changes<'a> {
     imposed: &'a Imposed<'a>,
     candidates: &'a [Term],
-    /// States of every term that remembers, at every point.
-    remembered: Vec<Vec<[f64; MOST_LAGS]>>,
+    /// States of every term that remembers.
+    remembered: Remembered,
     /// Their changes.
     lagged: Vec<Lagged>,
     /// States of every candidate that remembers.
@@ -34,17 +37,23 @@ impl Imposed<'_> {
     pub fn columns(&self, candidates: &[Term]) -> Columns {
         let changes = Changes::new(self, candidates);
         let is_through = [0, 1].map(|c| channel::is_read_through(self.terms, c));
+        let courses = self.time_s.map(|time_s| -> Vec<CourseChanges> {
+            time_s.iter().map(|t| self.course.changes(*t)).collect()
+        });
+        let instants = |c: usize| -> Vec<Instant<'_>> {
+            let all = self.time_s[c].iter().zip(&courses[c]);
+            let motion = |course| self.course.motion(course);
+            all.map(|(t, course)| self.with_moment(*t, motion(course), &changes.remembered))
+                .collect()
+        };
         let needs_roll = is_through[0] || channel::is_read_through(candidates, 0);
-        let roll = needs_roll.then(|| self.instants(0, &changes.remembered));
-        let moment = self.instants(1, &changes.remembered);
+        let roll = needs_roll.then(|| instants(0));
+        let moment = instants(1);
         let here = self.read(roll.as_deref(), &moment);
         let n_roll = self.time_s[0].len();
         let mut columns = vec![vec![0.0; here.len()]; changes.n_columns];
-        if !is_through[0] {
-            for (sample, t) in self.time_s[0].iter().enumerate() {
-                let all = self.course.changes(*t);
-                (0..N_COURSE).for_each(|j| columns[j][sample] = all[j][0]);
-            }
+        for (j, column) in columns[..N_COURSE].iter_mut().enumerate() {
+            column.iter_mut().zip(&courses[0]).for_each(|(row, course)| *row = course[j][0]);
         }
         for (c, instants) in [roll.as_deref().unwrap_or_default(), &moment[..]].iter().enumerate() {
             let (first, kind) = if c == 0 { (0, 0) } else { (n_roll, 3) };
@@ -53,7 +62,7 @@ impl Imposed<'_> {
                 tangents = vec![Some(vec![[0.0; 4]; instants.len()]); changes.n_columns];
             }
             if is_through[c] || c == 1 {
-                changes.each(instants, &mut |column, sample, tangent| {
+                changes.each(instants, &courses[c], &mut |column, sample, tangent| {
                     columns[column][first + sample] = tangent[kind];
                     if let Some(Some(kept)) = tangents.get_mut(column) {
                         kept[sample] = tangent;
@@ -94,9 +103,9 @@ impl<'a> Changes<'a> {
         if !imposed.terms.iter().any(|term| lags(&term)) && !candidates.iter().any(|c| shown(&c)) {
             return all;
         }
-        let points = imposed.points();
+        let points = &all.remembered.points;
         let instants: Vec<Instant<'_>> =
-            (0..points.n).map(|k| imposed.instant(points.time_s(k))).collect();
+            points.times_s().map(|t| imposed.instant(t, imposed.course.at(t))).collect();
         all.lagged = all.lags_changed(&instants);
         let followed = candidates.iter().filter(shown).map(|term| match term.effect.acts {
             Acts::Lagging(lag) => follow(&lag, &term.values, &instants, points.step_s),
@@ -108,11 +117,11 @@ impl<'a> Changes<'a> {
 
     /// Changes of the states of every term that remembers.
     fn lags_changed(&self, instants: &[Instant<'_>]) -> Vec<Lagged> {
-        if self.remembered.is_empty() {
+        if self.remembered.states.is_empty() {
             return Vec::new();
         }
-        let step_s = self.imposed.points().step_s;
-        let courses: Vec<[[f64; 3]; N_COURSE]> =
+        let step_s = self.remembered.points.step_s;
+        let courses: Vec<CourseChanges> =
             instants.iter().map(|i| self.imposed.course.changes(i.time_s)).collect();
         let mut first = N_COURSE + N_BASE;
         let mut all = Vec::new();
@@ -120,7 +129,7 @@ impl<'a> Changes<'a> {
             let own = first..first + values.len();
             first = own.end;
             let Acts::Lagging(lag) = effect.acts else { continue };
-            let states = &self.remembered[all.len()];
+            let states = &self.remembered.states[all.len()];
             let rows: Vec<[Sloped; MOST_LAGS]> = instants
                 .iter()
                 .zip(states)
@@ -143,16 +152,20 @@ impl<'a> Changes<'a> {
     }
 
     /// The change with every column at every instant.
-    fn each(&self, instants: &[Instant<'_>], tell: &mut dyn FnMut(usize, usize, Tangent)) {
+    fn each(
+        &self,
+        instants: &[Instant<'_>],
+        courses: &[CourseChanges],
+        tell: &mut dyn FnMut(usize, usize, Tangent),
+    ) {
         let imposed = self.imposed;
         let (w, b1, b3) = (imposed.base.natural_rad_s, imposed.base.b1_per_s, imposed.base.b3_s);
-        let (scale, points) = (imposed.scale(), imposed.points());
+        let (scale, points) = (imposed.scale(), &self.remembered.points);
         let mut sums = vec![0.0; self.n_columns];
-        for (sample, instant) in instants.iter().enumerate() {
+        for (sample, (instant, course)) in instants.iter().zip(courses).enumerate() {
             let (roll, rate) = (instant.roll_rad, instant.rate_rad_per_s);
             let acceleration = instant.acceleration_rad_per_s2;
             sums.fill(0.0);
-            let course = imposed.course.changes(instant.time_s);
             let sloped = slopes::inputs(instant);
             let mut whole = [w * w, b1 + 3.0 * b3 * rate * rate, 1.0];
             let (mut first, mut lag_place) = (N_COURSE + N_BASE, 0);
@@ -170,7 +183,7 @@ impl<'a> Changes<'a> {
                     }
                     Acts::Lagging(lag) => {
                         let place = points.place(instant.time_s);
-                        let states = between(&self.remembered[lag_place], place);
+                        let states = between(&self.remembered.states[lag_place], place);
                         let (_, of) = slopes::of_lag(&lag, &sloped, values, &states);
                         for (sum, lagged) in sums.iter_mut().zip(&self.lagged[lag_place]) {
                             let change = lagged.as_ref().map(|points| between(points, place));
@@ -197,7 +210,7 @@ impl<'a> Changes<'a> {
                     }
                 }
             }
-            for (sum, change) in sums.iter_mut().zip(&course) {
+            for (sum, change) in sums.iter_mut().zip(course) {
                 *sum += whole[0] * change[0] + whole[1] * change[1] + whole[2] * change[2];
             }
             let all = instant.moment_n_m / scale;
@@ -223,7 +236,7 @@ impl<'a> Changes<'a> {
             let shows = (candidate.effect.shows)(instant.run);
             let states = match candidate.effect.acts {
                 Acts::Lagging(_) if shows => followed.next().map_or([0.0; MOST_LAGS], |states| {
-                    between(states, self.imposed.points().place(instant.time_s))
+                    between(states, self.remembered.points.place(instant.time_s))
                 }),
                 _ => [0.0; MOST_LAGS],
             };
