@@ -16,6 +16,7 @@ mod layout;
 mod leftover;
 mod next_run;
 mod observation;
+mod plan;
 mod records;
 mod run_fit;
 mod scatter;
