@@ -1,6 +1,7 @@
 //! What the program can do, measured: how often its bands hold the truth, how fast it is.
 
 pub mod calibration;
+pub mod diagnosis;
 pub mod drawn_run;
 pub mod paper_hyperpriors;
 pub mod ranks;

@@ -30,7 +30,7 @@ pub struct Figure {
     pub value: String,
 }
 
-fn figure(name: impl Into<String>, value: String) -> Figure {
+pub(super) fn figure(name: impl Into<String>, value: String) -> Figure {
     Figure { name: name.into(), value }
 }
 

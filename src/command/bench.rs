@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use super::{Exit, Failure};
 use crate::bench::ranks::Ranks;
 use crate::bench::speed::{self, Figure};
-use crate::bench::{Calibration, calibrate, machine};
+use crate::bench::{Calibration, calibrate, diagnosis, machine};
 
 /// Measure speed and memory on this machine, and how often the bands hold the truth
 #[derive(Debug, Args)]
@@ -23,8 +23,9 @@ pub(super) struct Arguments {
     /// Seed of the drawn runs
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Folder in which the campaign of a thousand runs is written and left; new or empty
-    #[arg(long, value_name = "FOLDER")]
+    /// Folder in which the campaign of a thousand runs, or that to be diagnosed, is written and
+    /// left; new or empty
+    #[arg(long, value_name = "FOLDER", required_if_eq("subject", "diagnosis"))]
     campaign: Option<PathBuf>,
 }
 
@@ -34,12 +35,21 @@ enum Subject {
     Speed,
     /// Coverage and rank histograms over drawn runs
     Calibration,
-    /// Both
+    /// Time of a diagnosis of twelve passes, and of one run
+    Diagnosis,
+    /// Speed and calibration
     All,
 }
 
 pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
     writeln!(out, "machine: {}\n", machine())?;
+    if arguments.subject == Subject::Diagnosis {
+        if let Some(folder) = &arguments.campaign {
+            super::fresh_folder::require_fresh(folder)?;
+            told(out, diagnosis::of_twelve_passes(folder).map_err(Failure::Bench)?)?;
+        }
+        return Ok(Exit::Done);
+    }
     if arguments.subject != Subject::Calibration {
         told(out, speed::one_decay())?;
         told(out, speed::long_decays())?;

@@ -8,6 +8,8 @@ use crate::run::Series;
 const CREST_FROM: f64 = 0.93;
 /// Curvature below this share of a round crest's is none.
 const FLAT: f64 = 0.35;
+/// Logarithm of the odds against chance above which readings stick.
+const STUCK: f64 = 5.0;
 /// Crests within this share of the largest reading may be at the end of the range.
 const NEAR_TOP: f64 = 0.97;
 
@@ -31,15 +33,15 @@ fn stuck(values: &[f64]) -> Option<Clip> {
         let is_there = |value: &f64| sign * (value - middle) >= end;
         let rows = values.split(|value| !is_there(value)).map(<[f64]>::len);
         let n_alike: usize = rows.map(|n| n.saturating_sub(1)).sum();
-        // Any reading may be the largest; that its neighbour is too takes chance.
-        let log_bayes_factor = -(n_alike as f64) * alike.min(1.0).ln() - 5.0;
+        // Any reading may be the largest; that its neighbours are too takes chance.
+        let log_bayes_factor = -(n_alike as f64) * alike.min(1.0).ln();
         Clip { level_rad: end, sd_rad: step_rad, log_bayes_factor }
     };
     let ends = [end_of(1.0), end_of(-1.0)];
     let [surest, other] =
         if ends[0].log_bayes_factor > ends[1].log_bayes_factor { ends } else { [ends[1], ends[0]] };
     let is_wide = surest.level_rad > 0.5 * other.level_rad;
-    (surest.log_bayes_factor > 10.0 && alike < 0.5 && is_wide).then_some(surest)
+    (surest.log_bayes_factor > STUCK && alike < 0.5 && is_wide).then_some(surest)
 }
 
 /// Crests that are flat at one level.

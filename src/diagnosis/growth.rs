@@ -1,14 +1,13 @@
 //! The model grows by one effect at a time until nothing more is to be named.
 
-use super::alike::{SAME, contains, explained, is_approximate, is_same};
-use super::cores;
-use super::layout::Layout;
+use super::alike::{contains, explained, is_approximate, is_same};
+use super::backward::check_backward;
 use super::leftover::{self, Leftover};
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score};
 use super::settle::{Settled, settle};
-use super::survey::{Extension, Fit, Survey};
-use crate::model::effects;
+use super::survey::{Fit, Survey};
+use super::trial::{Tried, fit_all, is_newest_plausible, is_plausible};
 
 /// Least logarithm of a Bayes factor at which an effect may enter: one in a thousand by chance.
 pub(super) const ENTERS: f64 = 7.0;
@@ -31,7 +30,7 @@ pub(super) struct Entered {
     /// What it explains: the fall of the misfit.
     pub(super) explained: f64,
     /// What it removes of what is left beyond the noise, in units of its variance.
-    removed: f64,
+    pub(super) removed: f64,
     pub(super) equivalent_to: Vec<&'static str>,
 }
 
@@ -45,12 +44,6 @@ pub(super) struct Grown {
     pub(super) ranking: Vec<(&'static str, f64)>,
     /// Effects that would explain more but lie outside their physical range, with that.
     pub(super) implausible: Vec<(&'static str, f64)>,
-}
-
-/// A candidate fitted in full.
-struct Tried {
-    settled: Settled,
-    id: &'static str,
 }
 
 /// Grows the base model of a campaign.
@@ -209,48 +202,6 @@ fn winner(
     plausible.into_iter().next().map(|best| (best.settled, entered))
 }
 
-/// A model with one effect fewer, where another reading of a cause makes it needless.
-fn simpler(
-    survey: &Survey,
-    current: &Settled,
-    entered: &[Entered],
-    noise: &[ChannelNoise],
-) -> Option<(Settled, Vec<Entered>)> {
-    let undecided = entered.iter().enumerate().filter(|(_, one)| !one.equivalent_to.is_empty());
-    for (place, one) in undecided {
-        for needless in (0..entered.len()).filter(|other| *other != place) {
-            let mut less = current.fit.clone();
-            for taken in [place.max(needless), place.min(needless)] {
-                less.extensions.remove(taken);
-            }
-            let without = settle(survey, less, noise);
-            let scores = score(survey, &without.fit, noise);
-            for id in &one.equivalent_to {
-                let Some(reading) = scores.iter().find(|s| s.extension.effect.id == *id) else {
-                    continue;
-                };
-                let fit = with(survey, &without.fit, reading.extension.clone(), noise);
-                let settled = settle(survey, fit, noise);
-                if settled.log_evidence > current.log_evidence - 0.25 * SAME
-                    && is_newest_plausible(survey, &settled)
-                {
-                    let mut fit = settled.fit;
-                    let newest = fit.extensions.pop()?;
-                    let at = place.min(fit.extensions.len());
-                    fit.extensions.insert(at, newest);
-                    let mut kept = entered.to_vec();
-                    kept[place] = Entered { id, equivalent_to: vec![one.id], ..one.clone() };
-                    let moved = kept.remove(place);
-                    kept.remove(if needless > place { needless - 1 } else { needless });
-                    kept.insert(at.min(kept.len()), moved);
-                    return Some((settle(survey, fit, noise), kept));
-                }
-            }
-        }
-    }
-    None
-}
-
 /// Whether an effect takes its part of what is left for sure: what removes a little of a large
 /// remainder is not its cause, whatever its odds.
 fn explains_enough(before: &[Leftover], after: &[Leftover]) -> bool {
@@ -280,68 +231,6 @@ pub(super) fn leftovers(survey: &Survey, fit: &Fit) -> Vec<Leftover> {
         .collect()
 }
 
-/// Takes each effect out again: one that is missed too little leaves, and what could stand in its
-/// place, the others given, is told with it.
-fn check_backward(
-    survey: &Survey,
-    grown: Settled,
-    mut entered: Vec<Entered>,
-    noise: &[ChannelNoise],
-) -> (Settled, Vec<Entered>) {
-    let mut current = settle(survey, grown.fit, noise);
-    while let Some((fewer, kept)) = simpler(survey, &current, &entered, noise) {
-        (current, entered) = (fewer, kept);
-    }
-    let mut e = 0;
-    while e < entered.len() {
-        let mut less = current.fit.clone();
-        let taken = less.extensions.remove(e);
-        let without = settle(survey, less, noise);
-        let missed = current.log_evidence - without.log_evidence;
-        if missed < ENTERS {
-            current = without;
-            entered.remove(e);
-            continue;
-        }
-        let explained = explained(survey, &without, &current);
-        let rivals: Vec<Scored> = score(survey, &without.fit, noise)
-            .into_iter()
-            .filter(|s| {
-                s.extension.effect.id != taken.effect.id && s.log_bayes_factor > 0.3 * missed
-            })
-            .take(4)
-            .collect();
-        let tried = fit_all(survey, &without, &rivals, noise);
-        let left = excess(&leftovers(survey, &current.fit));
-        entered[e].log_bayes_factor = missed;
-        entered[e].explained = explained;
-        entered[e].equivalent_to = tried
-            .iter()
-            .filter(|one| is_newest_plausible(survey, &one.settled))
-            .filter(|one| !contains(one.id, taken.effect.id))
-            .filter(|one| is_same(survey, &without, &current, &one.settled, left))
-            .map(|one| one.id)
-            .collect();
-        let better = tried
-            .into_iter()
-            .filter(|one| is_newest_plausible(survey, &one.settled))
-            .filter(|one| one.settled.log_evidence > current.log_evidence + 0.5 * SAME)
-            .max_by(|a, b| a.settled.log_evidence.total_cmp(&b.settled.log_evidence));
-        if let Some(better) = better {
-            // The newcomer takes the place of the one that was taken out.
-            let mut fit = better.settled.fit.clone();
-            if let Some(newest) = fit.extensions.pop() {
-                fit.extensions.insert(e, newest);
-            }
-            entered[e].id = better.id;
-            entered[e].equivalent_to.retain(|id| *id != better.id);
-            current = settle(survey, fit, noise);
-        }
-        e += 1;
-    }
-    (current, entered)
-}
-
 fn rough_noise(survey: &Survey) -> Vec<ChannelNoise> {
     survey
         .runs
@@ -360,68 +249,4 @@ fn white(mut noise: Vec<ChannelNoise>) -> Vec<ChannelNoise> {
         one.correlation = [0.0; 2];
     }
     noise
-}
-
-fn fit_all(
-    survey: &Survey,
-    current: &Settled,
-    scores: &[Scored],
-    noise: &[ChannelNoise],
-) -> Vec<Tried> {
-    cores::each(scores.len(), |k| {
-        let extension = scores[k].extension.clone();
-        let id = extension.effect.id;
-        Tried { settled: settle(survey, with(survey, &current.fit, extension, noise), noise), id }
-    })
-}
-
-/// The model with one more effect: with the strengths that the score gives it where they help as
-/// they are, else without any, from where all numbers move together.
-fn with(survey: &Survey, fit: &Fit, mut extension: Extension, noise: &[ChannelNoise]) -> Fit {
-    let effect = extension.effect;
-    let n_strengths = effect.strengths.len();
-    for values in &mut extension.slots {
-        for (k, value) in values.iter_mut().enumerate() {
-            let [low, high] = effect.parameter(k).range;
-            *value = value.clamp(low, high);
-        }
-    }
-    let mut idle = fit.clone();
-    let mut at_rest = extension.clone();
-    at_rest.slots.iter_mut().for_each(|values| values[..n_strengths].fill(0.0));
-    idle.extensions.push(at_rest);
-    let mut acting = fit.clone();
-    for (run, slot) in extension.slot_of.iter().enumerate() {
-        let values = slot.map(|slot| &extension.slots[slot]);
-        let base = &fit.states[run].base;
-        let exchanged = values
-            .and_then(|values| effects::exchanged(effect, base, &survey.runs[run].at, values));
-        acting.states[run].base = exchanged.unwrap_or(*base);
-    }
-    acting.extensions.push(extension);
-    let is_exchange = (0..survey.runs.len()).any(|r| acting.states[r].base != fit.states[r].base);
-    if is_exchange || survey.misfit(&acting, noise) < survey.misfit(&idle, noise) {
-        acting
-    } else {
-        idle
-    }
-}
-
-/// Whether the newest effect lies inside its physical range.
-fn is_newest_plausible(survey: &Survey, settled: &Settled) -> bool {
-    settled.fit.extensions.len().checked_sub(1).is_none_or(|e| is_plausible(survey, settled, e))
-}
-
-/// Whether an effect lies inside its physical range, as far as its deviation allows.
-fn is_plausible(survey: &Survey, settled: &Settled, e: usize) -> bool {
-    let extension = &settled.fit.extensions[e];
-    let layout = Layout::new(survey, &settled.fit);
-    extension.slots.iter().enumerate().all(|(s, values)| {
-        (0..extension.effect.strengths.len()).all(|k| {
-            let [low, high] = extension.effect.strengths[k].range;
-            let column = layout.parameter(&settled.fit, e, s, k);
-            let sd = settled.solution.covariance[column][column].max(0.0).sqrt();
-            values[k] > low - 2.0 * sd && values[k] < high + 2.0 * sd
-        })
-    })
 }

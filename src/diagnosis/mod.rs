@@ -6,6 +6,7 @@
 //! is to be named.
 
 mod alike;
+mod backward;
 mod clipping;
 mod cores;
 mod elimination;
@@ -16,6 +17,7 @@ mod layout;
 mod leftover;
 mod next_run;
 mod observation;
+mod plan;
 mod records;
 mod run_fit;
 mod scatter;
@@ -24,6 +26,7 @@ mod settle;
 mod solve;
 mod spectrum;
 mod survey;
+mod trial;
 mod unexplained;
 mod verdict;
 

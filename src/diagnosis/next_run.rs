@@ -7,13 +7,13 @@ use super::cores;
 use super::elimination::Products;
 use super::growth::{Grown, leftovers};
 use super::observation::Observation;
-use super::run_fit::{ChannelNoise, RunState, predict, summarise};
+use super::plan::{Plan, plans};
+use super::run_fit::{RunState, predict, summarise};
 use super::score::{Scored, score};
 use super::settle::{Settled, settle};
 use super::solve::{Joint, OneMore};
 use super::survey::{Fit, N_LAW, Survey};
 use crate::campaign::Tank;
-use crate::model::course::N_COURSE;
 use crate::run::RunKind;
 
 /// A run worth towing.
@@ -43,116 +43,6 @@ const ONE_IN_DECAYS: [[&str; 2]; 2] =
 
 fn is_one_in_decays(a: &str, b: &str) -> bool {
     ONE_IN_DECAYS.iter().any(|pair| *pair == [a, b] || *pair == [b, a])
-}
-
-/// A run that could be made.
-#[derive(Debug, Clone, Copy)]
-struct Plan {
-    kind: RunKind,
-    froude: f64,
-    amplitude_deg: f64,
-    /// Excitation over natural frequency [-].
-    tuning: f64,
-}
-
-/// Length that the carriage may run steadily, as a share of the tank.
-const STEADY_SHARE: f64 = 0.7;
-const LONGEST_S: f64 = 25.0;
-const SHORTEST_S: f64 = 8.0;
-const SAMPLE_S: f64 = 0.02;
-/// Times that a rival is linearised anew on a run that it has not seen.
-const RELINEARISED: usize = 4;
-
-/// Amplitude that may be asked for, over the largest that was rolled: beyond it the law is not
-/// known, nor whether the deck stays dry.
-const REACH: f64 = 1.7;
-
-fn plans(tank: &Tank, survey: &Survey) -> Vec<(Plan, f64)> {
-    let run = &survey.runs[0];
-    let rolled_rad = survey.runs.iter().map(|run| run.at.amplitude_rad).fold(0.0, f64::max);
-    let largest_deg = REACH * rolled_rad.to_degrees();
-    let unit_m_s = run.at.speed_m_s / run.at.froude.max(1e-9);
-    let mut plans = Vec::new();
-    for froude in [0.0, 0.05, 0.1, 0.2, 0.3, 0.4] {
-        // Without a run under way the speed of a Froude number is not known here.
-        let speed_m_s = if run.at.froude > 0.01 { froude * unit_m_s } else { froude * 4.95 };
-        if tank.carriage_max_speed_m_s.is_some_and(|most| speed_m_s > most) {
-            continue;
-        }
-        let steady_s = tank.length_m.map_or(LONGEST_S, |m| STEADY_SHARE * m / speed_m_s.max(1e-9));
-        let span_s = steady_s.min(LONGEST_S);
-        if span_s < SHORTEST_S {
-            continue;
-        }
-        for amplitude_deg in [4.0, 10.0, 15.0, -15.0, 25.0] {
-            plans.push((Plan { kind: RunKind::Decay, froude, amplitude_deg, tuning: 1.0 }, span_s));
-        }
-        if froude == 0.0 || (froude - 0.2).abs() < 1e-9 {
-            for tuning in [0.75, 1.0, 1.2] {
-                for amplitude_deg in [5.0, 10.0, 15.0] {
-                    plans.push((
-                        Plan { kind: RunKind::Forced, froude, amplitude_deg, tuning },
-                        span_s,
-                    ));
-                }
-            }
-        }
-    }
-    plans.retain(|(plan, _)| plan.amplitude_deg.abs() <= largest_deg.max(4.0));
-    plans
-}
-
-impl Plan {
-    /// The run as it would be observed under a fit, without noise.
-    fn observed(
-        &self,
-        survey: &Survey,
-        fit: &Fit,
-        span_s: f64,
-        left: [f64; 2],
-    ) -> (Observation, RunState, ChannelNoise) {
-        let like = &survey.runs[0];
-        let law = &fit.laws[survey.condition_of[0]];
-        let [w, b1, b3] = law.at(self.froude);
-        let amplitude_rad = self.amplitude_deg.to_radians();
-        let rolling_rad_s = self.tuning * w;
-        let mut at = like.at;
-        at.kind = self.kind;
-        let unit_m_s = if at.froude > 0.01 { at.speed_m_s / at.froude } else { 4.95 };
-        (at.froude, at.speed_m_s) = (self.froude, self.froude * unit_m_s);
-        (at.rolling_rad_s, at.span_s) = (rolling_rad_s, span_s);
-        at.amplitude_rad = amplitude_rad.abs();
-        at.initial_roll_rad = amplitude_rad;
-        at.b1_per_s = b1.max(1e-3);
-        at.has_moment = self.kind == RunKind::Forced;
-        at.order = survey.runs.len();
-        let times: Vec<f64> =
-            (0..(span_s / SAMPLE_S) as usize).map(|i| i as f64 * SAMPLE_S).collect();
-        let mut run = Observation::clone(like);
-        run.at = at;
-        run.moment_time_s = if at.has_moment { times.clone() } else { Vec::new() };
-        run.roll_time_s = times;
-        let mut own = vec![amplitude_rad, 0.0, 0.0];
-        if self.kind == RunKind::Forced {
-            own = vec![0.0; N_COURSE + 1];
-            own[1] = amplitude_rad;
-            own[N_COURSE - 1] = rolling_rad_s;
-        }
-        let mut base = like.base;
-        (base.natural_rad_s, base.b1_per_s, base.b3_s) = (w, b1, b3);
-        base.log_scale = fit.log_scale;
-        let state = RunState { own, base };
-        let known =
-            survey.runs.iter().find(|run| run.at.has_moment && run.at.kind == RunKind::Forced);
-        let stiffness = at.inertia_kg_m2 * w * w;
-        // A load cell resolves about a thousandth of the model's moment at half a radian.
-        let moment_sd = known.map_or(6e-4 * stiffness, |run| run.rough_noise[1]);
-        let noise = ChannelNoise {
-            sd: [like.rough_noise[0].max(left[0]), moment_sd.max(left[1])],
-            correlation: [0.0; 2],
-        };
-        (run, state, noise)
-    }
 }
 
 /// The fit with the set of each extension that a new run would have.
@@ -189,6 +79,9 @@ fn left_in_channels(survey: &Survey, fit: &Fit) -> [f64; 2] {
         rms.get(rms.len() / 2).copied().unwrap_or(0.0)
     })
 }
+
+/// Times that a rival is linearised anew on a run that it has not seen.
+const RELINEARISED: usize = 4;
 
 /// A rival with all that the runs so far say of it.
 struct Rival {

@@ -151,7 +151,9 @@ pub(super) fn summarise(
     let n_candidates: usize = candidates.iter().map(|c| c.effect.strengths.len()).sum();
     let n_known = changes.len() - n_candidates;
     changes.insert(n_known, left);
-    changes.iter_mut().for_each(|column| whiten(run, noise, column));
+    for column in &mut changes {
+        whiten(run, noise, column);
+    }
     let (known, tried) = changes.split_at(n_known + 1);
     let mut products = Products::of(known);
     // The offset's prior is one more reading of it.

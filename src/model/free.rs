@@ -36,7 +36,7 @@ pub(super) struct Path<const N: usize> {
     pub(super) points: Vec<[f64; N]>,
 }
 
-impl<'a> Decay<'a> {
+impl Decay<'_> {
     /// What both channels read: roll [rad], then moment [N m].
     pub fn readings(&self) -> Vec<f64> {
         match self.n_lags() {

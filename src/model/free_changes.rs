@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::effect::{Acts, Instant, Tap};
+use super::effect::{Acts, Instant, MOST_LAGS, Tap};
 use super::free::{Decay, LEAST_INERTIA, N_START, Path};
 use super::history::History;
 use super::lagging::follow;
@@ -256,19 +256,23 @@ fn pushes(
     term.nudged_each()
         .into_iter()
         .map(|(values, by)| {
-            let all = instants.iter().zip(quotients).enumerate();
+            let all = instants.iter().zip(quotients);
             match term.effect.acts {
                 _ if !shows => None,
-                Acts::Moment(law) | Acts::Echo(law, _) => Some(
-                    all.map(|(_, (i, p))| (law.plain)(i, &values) / (by * p.inertia)).collect(),
-                ),
+                Acts::Moment(law) | Acts::Echo(law, _) => {
+                    Some(all.map(|(i, p)| (law.plain)(i, &values) / (by * p.inertia)).collect())
+                }
                 Acts::Inertia(law) => {
                     let push = |i, p: &Quotient| -p.acceleration * (law.plain)(i, &values);
-                    Some(all.map(|(_, (i, p))| push(i, p) / (by * p.inertia)).collect())
+                    Some(all.map(|(i, p)| push(i, p) / (by * p.inertia)).collect())
                 }
                 Acts::Lagging(lag) => {
-                    let moment = |k: usize, i| (lag.moment.plain)(i, &values, &remembered[k]);
-                    Some(all.map(|(k, (i, p))| moment(k, i) / (by * p.inertia)).collect())
+                    let moment = |i, z: &[f64; MOST_LAGS]| (lag.moment.plain)(i, &values, z);
+                    Some(
+                        all.zip(&remembered)
+                            .map(|((i, p), z)| moment(i, z) / (by * p.inertia))
+                            .collect(),
+                    )
                 }
                 Acts::Roll(_) | Acts::Drive(_) | Acts::Record(_) => None,
             }

@@ -56,17 +56,16 @@ impl<'a> Imposed<'a> {
     pub fn readings(&self) -> Vec<f64> {
         let remembered = self.remembered();
         let is_through = channel::is_read_through(self.terms, 0);
-        let roll = is_through.then(|| self.instants(0, &remembered));
-        self.read(roll.as_deref(), &self.instants(1, &remembered))
+        let seen = if is_through { self.instants(0, &remembered) } else { Vec::new() };
+        let roll = self.time_s[0].iter().map(|t| self.course.at(*t)[0]).collect();
+        self.read(roll, [&seen, &self.instants(1, &remembered)])
     }
 
-    /// The readings of what both channels see; the roll's instants only where an effect needs them.
-    pub(super) fn read(&self, roll: Option<&[Instant<'_>]>, moment: &[Instant<'_>]) -> Vec<f64> {
-        let mut readings: Vec<f64> = match roll {
-            Some(instants) => instants.iter().map(|i| i.roll_rad).collect(),
-            None => self.time_s[0].iter().map(|t| self.course.at(*t)[0]).collect(),
-        };
-        channel::add(self.terms, 0, roll.unwrap_or_default(), &mut readings);
+    /// The readings of a roll, and of what the channels see; that of the roll channel may lack
+    /// where no effect looks at it.
+    pub(super) fn read(&self, roll: Vec<f64>, [seen, moment]: [&[Instant<'_>]; 2]) -> Vec<f64> {
+        let mut readings = roll;
+        channel::add(self.terms, 0, seen, &mut readings);
         let mut moments: Vec<f64> = moment.iter().map(|i| i.moment_n_m).collect();
         channel::add(self.terms, 1, moment, &mut moments);
         readings.extend(moments);

@@ -47,15 +47,15 @@ impl Imposed<'_> {
                 .collect()
         };
         let needs_roll = is_through[0] || channel::is_read_through(candidates, 0);
-        let roll = needs_roll.then(|| instants(0));
-        let moment = instants(1);
-        let here = self.read(roll.as_deref(), &moment);
+        let seen = [if needs_roll { instants(0) } else { Vec::new() }, instants(1)];
+        let roll = courses[0].iter().map(|course| self.course.motion(course)[0]).collect();
+        let here = self.read(roll, [&seen[0], &seen[1]]);
         let n_roll = self.time_s[0].len();
         let mut columns = vec![vec![0.0; here.len()]; changes.n_columns];
         for (j, column) in columns[..N_COURSE].iter_mut().enumerate() {
             column.iter_mut().zip(&courses[0]).for_each(|(row, course)| *row = course[j][0]);
         }
-        for (c, instants) in [roll.as_deref().unwrap_or_default(), &moment[..]].iter().enumerate() {
+        for (c, instants) in seen.iter().enumerate() {
             let (first, kind) = if c == 0 { (0, 0) } else { (n_roll, 3) };
             let mut tangents: Vec<Option<Vec<Tangent>>> = Vec::new();
             if is_through[c] {

@@ -136,6 +136,12 @@ impl Sloped {
         slopes[place] = 1.0;
         Self { value, slopes }
     }
+
+    /// A function of two numbers, given its value and its derivatives there.
+    fn combined(self, value: f64, of_self: f64, other: Self, of_other: f64) -> Self {
+        let slopes = array::from_fn(|k| of_self * self.slopes[k] + of_other * other.slopes[k]);
+        Self { value, slopes }
+    }
 }
 
 impl From<f64> for Sloped {
@@ -180,9 +186,7 @@ impl Mul for Sloped {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        let (a, b) = (self.value, other.value);
-        let slopes = array::from_fn(|k| self.slopes[k] * b + a * other.slopes[k]);
-        Self { value: a * b, slopes }
+        self.combined(self.value * other.value, other.value, other, self.value)
     }
 }
 
@@ -190,9 +194,8 @@ impl Div for Sloped {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
-        let value = self.value / other.value;
-        let slopes = array::from_fn(|k| (self.slopes[k] - value * other.slopes[k]) / other.value);
-        Self { value, slopes }
+        let (value, of_self) = (self.value / other.value, other.value.recip());
+        self.combined(value, of_self, other, -value * of_self)
     }
 }
 

@@ -165,7 +165,7 @@ mod tests {
                     let off = rms(slopes.iter().zip(told).map(|(s, t)| s - t)) / whole;
                     let id = term.map_or("base", |term| term.effect.id);
                     // Where an effect has corners, moving a number moves them between steps.
-                    assert!(off < 0.02, "{id}, {kind:?}, number {k}: off by {off:.5}");
+                    assert!(off < 0.01, "{id}, {kind:?}, number {k}: off by {off:.5}");
                 }
             }
         }

@@ -1,0 +1,113 @@
+//! The grown model looked back on: effects that are not missed leave, others may take their place.
+
+use super::alike::{SAME, contains, explained, is_same};
+use super::growth::{ENTERS, Entered, excess, leftovers};
+use super::run_fit::ChannelNoise;
+use super::score::{Scored, score};
+use super::settle::{Settled, settle};
+use super::survey::Survey;
+use super::trial::{fit_all, is_newest_plausible, with};
+
+/// Takes each effect out again: one that is missed too little leaves, and what could stand in its
+/// place, the others given, is told with it.
+pub(super) fn check_backward(
+    survey: &Survey,
+    grown: Settled,
+    mut entered: Vec<Entered>,
+    noise: &[ChannelNoise],
+) -> (Settled, Vec<Entered>) {
+    let mut current = settle(survey, grown.fit, noise);
+    while let Some((fewer, kept)) = simpler(survey, &current, &entered, noise) {
+        (current, entered) = (fewer, kept);
+    }
+    let mut e = 0;
+    while e < entered.len() {
+        let mut less = current.fit.clone();
+        let taken = less.extensions.remove(e);
+        let without = settle(survey, less, noise);
+        let missed = current.log_evidence - without.log_evidence;
+        if missed < ENTERS {
+            current = without;
+            entered.remove(e);
+            continue;
+        }
+        let explained = explained(survey, &without, &current);
+        let rivals: Vec<Scored> = score(survey, &without.fit, noise)
+            .into_iter()
+            .filter(|s| {
+                s.extension.effect.id != taken.effect.id && s.log_bayes_factor > 0.3 * missed
+            })
+            .take(4)
+            .collect();
+        let tried = fit_all(survey, &without, &rivals, noise);
+        let left = excess(&leftovers(survey, &current.fit));
+        entered[e].log_bayes_factor = missed;
+        entered[e].explained = explained;
+        entered[e].equivalent_to = tried
+            .iter()
+            .filter(|one| is_newest_plausible(survey, &one.settled))
+            .filter(|one| !contains(one.id, taken.effect.id))
+            .filter(|one| is_same(survey, &without, &current, &one.settled, left))
+            .map(|one| one.id)
+            .collect();
+        let better = tried
+            .into_iter()
+            .filter(|one| is_newest_plausible(survey, &one.settled))
+            .filter(|one| one.settled.log_evidence > current.log_evidence + 0.5 * SAME)
+            .max_by(|a, b| a.settled.log_evidence.total_cmp(&b.settled.log_evidence));
+        if let Some(better) = better {
+            // The newcomer takes the place of the one that was taken out.
+            let mut fit = better.settled.fit.clone();
+            if let Some(newest) = fit.extensions.pop() {
+                fit.extensions.insert(e, newest);
+            }
+            entered[e].id = better.id;
+            entered[e].equivalent_to.retain(|id| *id != better.id);
+            current = settle(survey, fit, noise);
+        }
+        e += 1;
+    }
+    (current, entered)
+}
+
+/// A model with one effect fewer, where another reading of a cause makes it needless.
+fn simpler(
+    survey: &Survey,
+    current: &Settled,
+    entered: &[Entered],
+    noise: &[ChannelNoise],
+) -> Option<(Settled, Vec<Entered>)> {
+    let undecided = entered.iter().enumerate().filter(|(_, one)| !one.equivalent_to.is_empty());
+    for (place, one) in undecided {
+        for needless in (0..entered.len()).filter(|other| *other != place) {
+            let mut less = current.fit.clone();
+            for taken in [place.max(needless), place.min(needless)] {
+                less.extensions.remove(taken);
+            }
+            let without = settle(survey, less, noise);
+            let scores = score(survey, &without.fit, noise);
+            for id in &one.equivalent_to {
+                let Some(reading) = scores.iter().find(|s| s.extension.effect.id == *id) else {
+                    continue;
+                };
+                let fit = with(survey, &without.fit, reading.extension.clone(), noise);
+                let settled = settle(survey, fit, noise);
+                if settled.log_evidence > current.log_evidence - 0.25 * SAME
+                    && is_newest_plausible(survey, &settled)
+                {
+                    let mut fit = settled.fit;
+                    let newest = fit.extensions.pop()?;
+                    let at = place.min(fit.extensions.len());
+                    fit.extensions.insert(at, newest);
+                    let mut kept = entered.to_vec();
+                    kept[place] = Entered { id, equivalent_to: vec![one.id], ..one.clone() };
+                    let moved = kept.remove(place);
+                    kept.remove(if needless > place { needless - 1 } else { needless });
+                    kept.insert(at.min(kept.len()), moved);
+                    return Some((settle(survey, fit, noise), kept));
+                }
+            }
+        }
+    }
+    None
+}

@@ -1,0 +1,85 @@
+//! A candidate beside the model, fitted in full from where its score stands.
+
+use super::cores;
+use super::layout::Layout;
+use super::run_fit::ChannelNoise;
+use super::score::Scored;
+use super::settle::{Settled, settle};
+use super::survey::{Extension, Fit, Survey};
+use crate::model::effects;
+
+/// A candidate fitted in full.
+pub(super) struct Tried {
+    pub(super) settled: Settled,
+    pub(super) id: &'static str,
+}
+
+/// Fits candidates in full, each on a core.
+pub(super) fn fit_all(
+    survey: &Survey,
+    current: &Settled,
+    scores: &[Scored],
+    noise: &[ChannelNoise],
+) -> Vec<Tried> {
+    cores::each(scores.len(), |k| {
+        let extension = scores[k].extension.clone();
+        let id = extension.effect.id;
+        Tried { settled: settle(survey, with(survey, &current.fit, extension, noise), noise), id }
+    })
+}
+
+/// The model with one more effect: with the strengths that the score gives it where they help as
+/// they are, else without any, from where all numbers move together.
+pub(super) fn with(
+    survey: &Survey,
+    fit: &Fit,
+    mut extension: Extension,
+    noise: &[ChannelNoise],
+) -> Fit {
+    let effect = extension.effect;
+    let n_strengths = effect.strengths.len();
+    for values in &mut extension.slots {
+        for (k, value) in values.iter_mut().enumerate() {
+            let [low, high] = effect.parameter(k).range;
+            *value = value.clamp(low, high);
+        }
+    }
+    let mut idle = fit.clone();
+    let mut at_rest = extension.clone();
+    at_rest.slots.iter_mut().for_each(|values| values[..n_strengths].fill(0.0));
+    idle.extensions.push(at_rest);
+    let mut acting = fit.clone();
+    for (run, slot) in extension.slot_of.iter().enumerate() {
+        let values = slot.map(|slot| &extension.slots[slot]);
+        let base = &fit.states[run].base;
+        let exchanged = values
+            .and_then(|values| effects::exchanged(effect, base, &survey.runs[run].at, values));
+        acting.states[run].base = exchanged.unwrap_or(*base);
+    }
+    acting.extensions.push(extension);
+    let is_exchange = (0..survey.runs.len()).any(|r| acting.states[r].base != fit.states[r].base);
+    if is_exchange || survey.misfit(&acting, noise) < survey.misfit(&idle, noise) {
+        acting
+    } else {
+        idle
+    }
+}
+
+/// Whether the newest effect lies inside its physical range.
+pub(super) fn is_newest_plausible(survey: &Survey, settled: &Settled) -> bool {
+    settled.fit.extensions.len().checked_sub(1).is_none_or(|e| is_plausible(survey, settled, e))
+}
+
+/// Whether an effect lies inside its physical range, as far as its deviation allows.
+pub(super) fn is_plausible(survey: &Survey, settled: &Settled, e: usize) -> bool {
+    let extension = &settled.fit.extensions[e];
+    let layout = Layout::new(survey, &settled.fit);
+    extension.slots.iter().enumerate().all(|(s, values)| {
+        (0..extension.effect.strengths.len()).all(|k| {
+            let [low, high] = extension.effect.strengths[k].range;
+            let column = layout.parameter(&settled.fit, e, s, k);
+            let sd = settled.solution.covariance[column][column].max(0.0).sqrt();
+            values[k] > low - 2.0 * sd && values[k] < high + 2.0 * sd
+        })
+    })
+}
