@@ -4,13 +4,16 @@
 
 use std::path::Path;
 
+use serde_json::Value;
+
+use super::campaign_folder::rolltank;
 use super::hidden_tank::campaign::{Asked, Campaign, SCATTER};
 use super::hidden_tank::draw::Draw;
 use super::hidden_tank::effects::INVENTED;
 use super::hidden_tank::fit::{INDISTINGUISHABLE, left_by, misfit};
 use super::hidden_tank::folder::play;
 use super::hidden_tank::next_run::towed;
-use super::hidden_tank::plan::RunSet;
+use super::hidden_tank::plan::{Action, RunSet};
 use super::hidden_tank::score::{Outcome, score};
 use super::hidden_tank::verdict::{Verdict, diagnose};
 
@@ -74,6 +77,40 @@ fn a_cubic_restoring_is_named_with_its_class_and_the_run_that_parts_it() {
     // The run that it asks for parts the two.
     let program = Path::new(env!("CARGO_BIN_EXE_rolltank"));
     assert_eq!(towed(&campaign, &verdict, program), Some(Outcome::Named), "{}", verdict.json);
+}
+
+#[test]
+fn once_the_model_knows_the_friction_the_identification_is_free_of_it() {
+    let hidden = vec!["damping.coulomb".to_owned()];
+    let seed = drawn_seed("friction taken off");
+    let asked = Asked { set: RunSet::Rest, hidden, size: 2.0, seed, scatter: 0.0 };
+    let campaign = Campaign::draw(&asked);
+    let place = tempfile::tempdir().expect("a place for a campaign");
+    let played = play(&campaign, place.path());
+    let asks = |arguments: &[&str]| {
+        let told = rolltank(&played.folder, arguments);
+        assert!(told.exit == 0 || told.exit == 3, "{}", told.err);
+        serde_json::from_str::<Value>(&told.out).expect("JSON")
+    };
+    // How far the linear damping of the large decays is from that of the hidden tank.
+    let error = || -> f64 {
+        let told = asks(&["identify", ".", "--json"]);
+        let runs = told["runs"].as_array().expect("runs").iter().zip(&campaign.passes);
+        let large = runs.filter(
+            |(_, pass)| matches!(pass.action, Action::Decay { heel_rad } if heel_rad.abs() > 0.2),
+        );
+        let off = large.map(|(run, pass)| {
+            let base = campaign.base_of(pass);
+            let truth = base.b0 / base.inertia * pass.scatter[0];
+            run["b1_per_s"]["mean"].as_f64().expect("a number") / truth - 1.0
+        });
+        off.map(f64::abs).fold(0.0, f64::max)
+    };
+    let before = error();
+    asks(&["diagnose", ".", "--json", "--write-model"]);
+    let after = error();
+    println!("largest error of b1: {:.1} % before, {:.1} % after", 100.0 * before, 100.0 * after);
+    assert!(after < 0.4 * before, "{before} {after}");
 }
 
 #[test]

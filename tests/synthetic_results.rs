@@ -65,6 +65,7 @@ pub(crate) fn campaign(name: &str) -> Campaign {
         exciter: Some(Exciter { moment_arm_m: 0.43, arm: Arm::Constant, force_sign: 1.0 }),
         columns: Columns::default(),
         recordings,
+        model: None,
     }
 }
 

@@ -9,12 +9,13 @@ mod speeds;
 mod tree;
 mod units;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use devices::Quantity;
 use replay::Columns;
 
 use crate::hull::{Hull, Water};
+use crate::model::model_file::ModelFile;
 use crate::roll::exciting_moment::Exciter;
 
 pub use mistake::Mistake;
@@ -39,6 +40,15 @@ pub struct Campaign {
     pub columns: Columns,
     /// The recordings in the order in which they are read.
     pub recordings: Vec<Recording>,
+    /// The simulation model that a diagnosis extended, where one was written.
+    pub model: Option<ModelFile>,
+}
+
+impl Campaign {
+    /// Where a diagnosis writes the model that it extended.
+    pub fn model_path(folder: &Path) -> PathBuf {
+        folder.join("results").join("model.toml")
+    }
 }
 
 /// Limits of the tank that runs are checked against.

@@ -9,6 +9,7 @@ use replay::Columns;
 use super::mistake::Mistake;
 use super::tree::{Section, Source};
 use super::{Campaign, Recording, columns, particulars, recordings};
+use crate::model::model_file::ModelFile;
 
 /// Name of the campaign file in its folder.
 pub const FILE_NAME: &str = "campaign.toml";
@@ -52,6 +53,7 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
     root.close();
     check_columns(root, columns.as_ref(), &recordings);
     check_exciter(root, &known);
+    let model = model(source, folder);
     Some(Campaign {
         folder: folder.to_owned(),
         name: name.unwrap_or_else(|| folder_name(folder)),
@@ -61,7 +63,28 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
         exciter,
         columns: known,
         recordings,
+        model,
     })
+}
+
+/// The extended model, where a diagnosis wrote one.
+fn model(source: &Source<'_>, folder: &Path) -> Option<ModelFile> {
+    let path = Campaign::model_path(folder);
+    let text = match std::fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return None,
+        Err(error) => {
+            source.add(None, format!("\"{}\": {error}", path.display()), None);
+            return None;
+        }
+    };
+    let model = ModelFile::from_toml(&text);
+    let hint = "move it away, or write it anew with `rolltank diagnose --write-model`";
+    model
+        .map_err(|mistake| {
+            source.add(None, format!("\"{}\": {mistake}", path.display()), Some(hint.to_owned()));
+        })
+        .ok()
 }
 
 fn found(source: &Source<'_>, folder: &Path) -> Vec<Recording> {

@@ -49,13 +49,9 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     Ok(exit)
 }
 
-/// Name of the model's file in the results of a campaign.
-const MODEL_FILE: &str = "model.toml";
-
 fn write_model(campaign: &Campaign, model: &ModelFile) -> Result<(), Failure> {
-    let folder = pipeline::results_folder(campaign);
-    let path = folder.join(MODEL_FILE);
+    let path = Campaign::model_path(&campaign.folder);
     let failed = |source| Failure::File { path: path.clone(), source };
-    fs::create_dir_all(&folder).map_err(failed)?;
+    fs::create_dir_all(pipeline::results_folder(campaign)).map_err(failed)?;
     fs::write(&path, model.to_toml()).map_err(failed)
 }

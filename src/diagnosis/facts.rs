@@ -25,7 +25,7 @@ pub(super) fn of(
     let n = roll.time_s.len();
     let sample_rate_hz = (n - 1) as f64 / (roll.time_s[n - 1] - roll.time_s[0]);
     let lowest_hz = (5.0 * rolling_rad_s / std::f64::consts::TAU).max(3.5);
-    let line = line(&roll.value, sample_rate_hz, lowest_hz);
+    let line = line(&roll.value, sample_rate_hz, lowest_hz, rolling_rad_s / std::f64::consts::TAU);
     let line_band_hz = [lowest_hz, 0.5 * sample_rate_hz];
     let clip = clipping::clip(roll, rolling_rad_s);
     Facts { quantum_rad, line, line_band_hz, n_samples: n, sample_rate_hz, froude, clip }
@@ -37,7 +37,7 @@ const LONGEST: usize = 4096;
 const LEAST: f64 = 12.0;
 
 /// The strongest line well above the roll's own harmonics.
-fn line(values: &[f64], rate_hz: f64, lowest_hz: f64) -> Option<Line> {
+fn line(values: &[f64], rate_hz: f64, lowest_hz: f64, rolling_hz: f64) -> Option<Line> {
     let differences = fourth_differences(&values[..values.len().min(LONGEST)]);
     let n = differences.len();
     if n < 64 {
@@ -57,7 +57,15 @@ fn line(values: &[f64], rate_hz: f64, lowest_hz: f64) -> Option<Line> {
     if powers.len() < 32 {
         return None;
     }
-    let best = (0..powers.len()).max_by(|a, b| powers[*a].total_cmp(&powers[*b]))?;
+    // An odd multiple of the roll's frequency is the roll's own, bent by a channel or a force.
+    let is_own = |bin: usize| {
+        let hz = (first + bin) as f64 * rate_hz / n as f64;
+        let order = (hz / rolling_hz).round();
+        let off_hz = (hz - order * rolling_hz).abs();
+        order <= 15.0 && order % 2.0 == 1.0 && off_hz < 2.0 * rate_hz / n as f64 + 0.01 * hz
+    };
+    let foreign = (0..powers.len()).filter(|bin| !is_own(*bin));
+    let best = foreign.max_by(|a, b| powers[*a].total_cmp(&powers[*b]))?;
     let mut sorted = powers.clone();
     let middle = sorted.len() / 2;
     let median = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;

@@ -9,6 +9,7 @@ mod alike;
 mod backward;
 mod clipping;
 mod cores;
+mod correction;
 mod elimination;
 mod facts;
 mod gain;
@@ -30,6 +31,7 @@ mod trial;
 mod unexplained;
 mod verdict;
 
+pub use correction::{Corrected, corrected};
 pub use leftover::Leftover;
 pub use next_run::NextRun;
 pub use observation::Observation;

@@ -3,7 +3,9 @@
 use super::names;
 use super::workers::Identified;
 use crate::campaign::Campaign;
+use crate::diagnosis;
 use crate::inverse;
+use crate::inverse::Setting;
 use crate::inverse::froude_law::Point;
 use crate::inverse::identification::FroudeLaw;
 use crate::results::{IdentifiedRun, Overview, RejectedStretch, Results};
@@ -33,10 +35,11 @@ impl<'c> Collector<'c> {
     pub(super) fn keep(
         &mut self,
         index: usize,
-        (run, identified): Identified,
+        identified: Identified,
     ) -> Option<&mut IdentifiedRun> {
         let recording = &self.campaign.recordings[index];
-        let mut identification = match identified {
+        let Identified { run, identification, setting } = identified;
+        let mut identification = match identification {
             Ok(identification) => identification,
             Err(reason) => {
                 let (start_s, end_s) = (run.start_s, run.end_s);
@@ -50,7 +53,7 @@ impl<'c> Collector<'c> {
             0.0
         });
         self.n_named[index] += 1;
-        self.results.runs.push(IdentifiedRun {
+        let mut identified = IdentifiedRun {
             id: format!("{}-{}", self.labels[index], self.n_named[index]),
             recording: recording.name.clone(),
             condition: recording.condition.clone(),
@@ -59,8 +62,25 @@ impl<'c> Collector<'c> {
             froude: self.campaign.hull.froude(speed_m_s.abs(), &self.campaign.water),
             run,
             identification,
-        });
+        };
+        if let Some(setting) = setting {
+            self.correct(&mut identified, &setting);
+        }
+        self.results.runs.push(identified);
         self.results.runs.last_mut()
+    }
+
+    /// Identifies a run anew without the effects that the campaign's model knows.
+    fn correct(&self, identified: &mut IdentifiedRun, setting: &Setting) {
+        let Some(model) = &self.campaign.model else { return };
+        let Some(corrected) = diagnosis::corrected(identified, self.campaign, model) else {
+            return;
+        };
+        if let Ok(mut again) = inverse::identify(&corrected.run, setting) {
+            let effects = corrected.effects.join(", ");
+            again.remarks.push(format!("corrected by the campaign's model.toml for {effects}"));
+            identified.identification = again;
+        }
     }
 
     pub(super) fn reject(&mut self, index: usize, rejection: Rejection) {

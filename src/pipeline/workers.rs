@@ -10,7 +10,12 @@ use crate::inverse::{self, Setting};
 use crate::run::Run;
 
 /// A run with what it says, or the reason why it says nothing.
-pub(super) type Identified = (Run, Result<Identification, String>);
+pub(super) struct Identified {
+    pub(super) run: Run,
+    pub(super) identification: Result<Identification, String>,
+    /// What was known beside the run; none where it was not asked about.
+    pub(super) setting: Option<Setting>,
+}
 
 /// A run that waits to be identified.
 struct Job {
@@ -47,7 +52,8 @@ impl Workers {
     /// The answer for a run that need not be asked about.
     pub(super) fn refuse(run: Run, reason: &str) -> Receiver<Identified> {
         let (reply, answer) = sync_channel(1);
-        reply.send((run, Err(reason.to_owned()))).expect("there is room for one answer");
+        let refused = Identified { run, identification: Err(reason.to_owned()), setting: None };
+        reply.send(refused).expect("there is room for one answer");
         answer
     }
 }
@@ -56,8 +62,8 @@ fn work(waiting: &Mutex<Receiver<Job>>) {
     loop {
         let next = waiting.lock().expect("nothing panics while a job is taken").recv();
         let Ok(Job { run, setting, reply }) = next else { return };
-        let identified = inverse::identify(&run, &setting);
+        let identification = inverse::identify(&run, &setting);
         // Nobody waits for the answer any more when the replay has ended early.
-        drop(reply.send((run, identified)));
+        drop(reply.send(Identified { run, identification, setting: Some(setting) }));
     }
 }

@@ -70,7 +70,11 @@ fn echo<N: Number>(run: &Circumstances, p: &[N], tell: &mut dyn FnMut(N, N, N)) 
         let weight = size * (1.0 - at * at);
         let of_roll = (p[1] * phase[0] - p[0] * phase[1]) * (w * weight);
         let of_rate = (p[0] * phase[0] + p[1] * phase[1]) * weight;
-        tell(first_s + step_s * f64::from(tap + N_SIDE), of_roll, of_rate);
+        let delay_s = first_s + step_s * f64::from(tap + N_SIDE);
+        // No wave is back within half a period.
+        if delay_s.value() > std::f64::consts::PI / w {
+            tell(delay_s, of_roll, of_rate);
+        }
         phase = times(phase, turn);
         turn = times(turn, more);
     }
