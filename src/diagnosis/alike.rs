@@ -27,12 +27,23 @@ pub(super) fn is_same(
     rival: &Settled,
     left: f64,
 ) -> bool {
+    if relabels_most(survey, rival) {
+        return false;
+    }
     let behind = favourite.log_evidence - rival.log_evidence;
     let gained = rival.log_evidence - before.log_evidence;
     let (most, as_well) = (explained(survey, before, favourite), explained(survey, before, rival));
     let room = SAME.max(SAME_SHARE * most).max(left.min(ALIKE_SHARE * most));
     let explains_it = gained > ENTERS && most - as_well < room;
     (2.0 * behind < SAME && gained > 0.5 * ENTERS) || explains_it
+}
+
+/// Whether a rival explains the runs by wrong labels on most of them: with numbers of its own for
+/// every run it comes near to any effect, and labels are wrong here and there, not everywhere.
+fn relabels_most(survey: &Survey, rival: &Settled) -> bool {
+    rival.fit.extensions.last().is_some_and(|newest| {
+        newest.effect.id == "run.mislabelled" && 2 * newest.slots.len() > survey.runs.len()
+    })
 }
 
 /// Whether a rival holds the favourite as a part, as a drift holds the zero that it starts from:
