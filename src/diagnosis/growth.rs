@@ -8,13 +8,18 @@ use super::score::{Scored, score};
 use super::settle::{Settled, settle};
 use super::survey::{Fit, Survey};
 use super::trial::{Tried, fit_all, is_newest_plausible, is_plausible};
+use crate::model::Scope;
 
 /// Least logarithm of a Bayes factor at which an effect may enter: one in a thousand by chance.
 pub(super) const ENTERS: f64 = 7.0;
 /// Share of what is left for sure that an effect must take away to enter.
 const ENOUGH: f64 = 0.2;
-/// Share of what an approximate effect explains that it may leave of itself.
+/// Share of what an approximate effect removes that it may leave of itself: no other effect.
 const CRUMB: f64 = 0.03;
+/// The same for an effect that each run has of its own, which takes up much of anything.
+const CRUMB_OF_EACH_RUN: f64 = 0.25;
+/// Share of the evidence of any effect below which another is a want of form of the first.
+const CRUMB_OF_EVIDENCE: f64 = 0.01;
 /// Most effects of a model.
 const MOST: usize = 5;
 /// Times that the base model is settled anew with the noise that it left.
@@ -187,9 +192,14 @@ fn winner(
     let explained = explained(survey, current, &best.settled);
     let left = excess(&after);
     let removed = excess(&before) - left;
-    // What an approximate effect leaves of itself is no other effect.
-    let crumbs = known.iter().filter(|entered| is_approximate(entered.id));
-    if crumbs.map(|entered| CRUMB * entered.removed).any(|crumb| removed < crumb) {
+    let newest = best.settled.fit.extensions.last();
+    let is_of_each_run = newest.is_some_and(|newest| newest.effect.scope == Scope::Run);
+    let is_crumb = |entered: &Entered| {
+        let share = if is_of_each_run { CRUMB_OF_EACH_RUN } else { CRUMB };
+        (is_approximate(entered.id) && removed < share * entered.removed)
+            || log_bayes_factor < CRUMB_OF_EVIDENCE * entered.log_bayes_factor
+    };
+    if known.iter().any(is_crumb) {
         return None;
     }
     let equivalent_to = plausible[1..]

@@ -139,19 +139,14 @@ impl Observation {
             if moment.value.is_empty() { 1.0 } else { facts::rough_noise(&moment.value) };
         let quantum_rad = record.quantum_rad;
         let facts = facts::of(&run.run.roll, quantum_rad, rolling_rad_s, run.froude);
-        // What a channel reads at the end of its range is no reading of the roll.
-        let end_rad = facts.clip.map_or(f64::INFINITY, |clip| clip.level_rad - 3.0 * noise_rad);
-        let read = |(t, r): (&f64, &f64)| ((r - mean).abs() < end_rad).then_some((*t, *r));
-        let (roll_time_s, roll_rad) =
-            record.time_s.iter().zip(&record.roll_rad).filter_map(read).unzip();
         Self {
             id: run.id.clone(),
             condition: run.condition.clone(),
             facts,
             at,
             origin_s: record.origin_s,
-            roll_time_s,
-            roll_rad,
+            roll_time_s: record.time_s.clone(),
+            roll_rad: record.roll_rad.clone(),
             moment_time_s: moment.time_s,
             moment_n_m: moment.value,
             rough_noise: [noise_rad, moment_noise],
@@ -163,6 +158,21 @@ impl Observation {
                 log_scale: 0.0,
             },
         }
+    }
+
+    /// Lets go of readings at the end of the channel's range, which are none of the roll, unless
+    /// another run read beyond: then it was no end.
+    pub(super) fn read_within(&mut self, largest_rad: f64) {
+        let Some(clip) = self.facts.clip else { return };
+        if largest_rad > 1.02 * clip.level_rad {
+            self.facts.clip = None;
+            return;
+        }
+        let mean_rad = self.roll_rad.iter().sum::<f64>() / self.roll_rad.len() as f64;
+        let end_rad = clip.level_rad - 3.0 * self.rough_noise[0];
+        let read = |(t, r): (&f64, &f64)| ((r - mean_rad).abs() < end_rad).then_some((*t, *r));
+        (self.roll_time_s, self.roll_rad) =
+            self.roll_time_s.iter().zip(&self.roll_rad).filter_map(read).unzip();
     }
 }
 
