@@ -60,6 +60,10 @@ fn a_simulation_that_lacks_nothing_is_adequate_and_no_file_is_written() {
     assert_eq!(json_schema::violations(&schema(), &document), Vec::<String>::new());
     assert_eq!(document["verdict"], "adequate", "{document:#}");
     assert_eq!(document["causes"], Value::Array(Vec::new()));
+    for left in document["residual"]["moment_after"].as_array().expect("a list") {
+        let outside = left["share_of_instants_outside"].as_f64().expect("a number");
+        assert!(outside < 0.15, "the band of the unexplained moment excludes nil: {left:#}");
+    }
     assert!(!folder.path().join("day/results").exists());
 }
 
@@ -80,6 +84,33 @@ fn a_zero_that_was_never_taken_is_named_with_the_heel_that_no_roll_test_parts_fr
     let model = fs::read_to_string(folder.path().join("day/results/model.toml")).unwrap();
     let model = ModelFile::from_toml(&model).expect("what was written can be read");
     assert_eq!(model.effects[0].id, "instrument.roll_offset");
+}
+
+#[test]
+fn the_moment_that_the_simulation_lacks_is_shown_before_and_after_it_is_named() {
+    let wrong = "waves = { moment_n_m = 0.03, frequency_rad_s = 6.3, decay_s = 1e6 }";
+    let (document, folder) = diagnosed(wrong, &[]);
+    assert_eq!(json_schema::violations(&schema(), &document), Vec::<String>::new());
+    let share = |when: &str| -> f64 {
+        let runs = document["residual"][when].as_array().expect("a list");
+        let shares = runs.iter().map(|left| left["share_of_instants_outside"].as_f64());
+        shares.map(|share| share.expect("a number")).fold(0.0, f64::max)
+    };
+    let (before, after) = (share("moment_before"), share("moment_after"));
+    assert!(before > 0.07 && after < 0.03, "{before} before, {after} after");
+    // What is shown before has the size of the wave that was hidden [N m].
+    let left = &document["residual"]["moment_before"][0]["mean_n_m"];
+    let left: Vec<f64> = left.as_array().unwrap().iter().filter_map(Value::as_f64).collect();
+    let rms = (left.iter().map(|m| m * m).sum::<f64>() / left.len() as f64).sqrt();
+    assert!((0.3 * 0.03..1.5 * 0.03).contains(&rms), "{rms} N m");
+    let report = rolltank(folder.path(), &["report", "day", "-o", "told"]);
+    assert_eq!(report.exit, 0, "{}", report.err);
+    let page = fs::read_to_string(folder.path().join("told/diagnosis.html")).unwrap();
+    for section in ["causes", "gain", "bias", "unexplained-moment", "against-motion", "left"] {
+        assert!(page.contains(&format!("id=\"{section}\"")), "{section}");
+    }
+    let index = fs::read_to_string(folder.path().join("told/index.html")).unwrap();
+    assert!(index.contains("href=\"diagnosis.html\""));
 }
 
 #[test]

@@ -60,9 +60,9 @@ fn line(values: &[f64], rate_hz: f64, lowest_hz: f64, rolling_hz: f64) -> Option
     // An odd multiple of the roll's frequency is the roll's own, bent by a channel or a force.
     let is_own = |bin: usize| {
         let hz = (first + bin) as f64 * rate_hz / n as f64;
-        let order = (hz / rolling_hz).round();
-        let off_hz = (hz - order * rolling_hz).abs();
-        order <= 15.0 && order % 2.0 == 1.0 && off_hz < 2.0 * rate_hz / n as f64 + 0.01 * hz
+        let order = (hz / rolling_hz).round() as usize;
+        let off_hz = (hz - order as f64 * rolling_hz).abs();
+        order <= 15 && !order.is_multiple_of(2) && off_hz < 2.0 * rate_hz / n as f64 + 0.01 * hz
     };
     let foreign = (0..powers.len()).filter(|bin| !is_own(*bin));
     let best = foreign.max_by(|a, b| powers[*a].total_cmp(&powers[*b]))?;

@@ -77,7 +77,9 @@ impl Survey {
         let mut conditions: Vec<String> = Vec::new();
         let n_runs = runs.len();
         let largest_rad = runs.iter().map(|run| run.at.amplitude_rad).fold(0.0, f64::max);
-        runs.iter_mut().for_each(|run| run.read_within(largest_rad));
+        for run in &mut runs {
+            run.read_within(largest_rad);
+        }
         let condition_of = runs
             .iter_mut()
             .map(|run| {

@@ -7,6 +7,7 @@
 use super::observation::Observation;
 use super::run_fit::predict;
 use super::survey::{Fit, Survey};
+use crate::inverse::record::evened;
 use crate::inverse::state_space::damped::Damped;
 use crate::inverse::state_space::drifting::Drifting;
 use crate::inverse::state_space::posterior::{
@@ -142,7 +143,8 @@ fn posterior(
     is_forced: bool,
 ) -> StatePosterior {
     let w = if is_forced { observation.at.rolling_rad_s } else { base.natural_rad_s };
-    let tau: Vec<f64> = times.iter().map(|t| w * t).collect();
+    let tau: Vec<f64> =
+        evened(times.iter().map(|t| t - times[0]).collect()).iter().map(|t| w * t).collect();
     let hyperprior = Hyperprior::ScaleFree { roll_scale_rad: rms(left.iter().copied()) };
     let quadrature = Quadrature::BAND;
     if is_forced {

@@ -146,8 +146,12 @@ pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
     };
     let next_run = next_run(&survey, &grown, tank);
     let model = model(&survey, &grown, &causes);
-    let mut implausible: Vec<&'static str> = grown.implausible.iter().map(|(id, _)| *id).collect();
-    implausible.dedup();
+    let mut implausible: Vec<&'static str> = Vec::new();
+    for (id, _) in &grown.implausible {
+        if !implausible.contains(id) {
+            implausible.push(id);
+        }
+    }
     Some(Diagnosis {
         verdict,
         causes,

@@ -194,7 +194,7 @@ fn averaged(series: &Series, width: usize) -> Averaged {
 }
 
 /// Times on an even grid when they stray from one by less than the model could notice.
-fn evened(time_s: Vec<f64>) -> Vec<f64> {
+pub fn evened(time_s: Vec<f64>) -> Vec<f64> {
     let n = time_s.len();
     let step = time_s[n - 1] / (n - 1) as f64;
     let strays =

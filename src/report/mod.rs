@@ -81,7 +81,8 @@ const DAMPING_FIGURE: &str = "damping_against_froude.svg";
 
 /// Writes the campaign's page, `index.html`, to `dir`; returns its path.
 ///
-/// With a diagnosis it leads to the page of [`write_diagnosis`]. Its figure of damping against Froude number is left beside it as a file of its own.
+/// With a diagnosis it leads to the page of [`write_diagnosis`]. Its figure of damping against
+/// Froude number is left beside it as a file of its own.
 pub fn write_campaign(
     campaign: &Campaign,
     results: &Results,

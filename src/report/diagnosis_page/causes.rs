@@ -11,6 +11,7 @@ use crate::report::number::fixed;
 /// Sets of parameters told of one effect; each run may have its own.
 const SETS: usize = 12;
 
+#[expect(clippy::unnecessary_wraps, reason = "every part of a page has one shape")]
 pub(super) fn part(page: &DiagnosisPage) -> Option<Markup> {
     let told = page.diagnosis;
     let rows: Vec<Markup> = told.causes.iter().flat_map(rows).collect();

@@ -50,10 +50,11 @@ fn figure(page: &DiagnosisPage, i: usize, pair: &(&Unexplained, &Unexplained)) -
             fixed(100.0 * left.outside, 0)
         )
     };
-    let mut caption = format!("Before: {}.", told(before));
-    if page.is_extended() {
-        caption += &format!(" After: {}.", told(after));
-    }
+    let caption = if page.is_extended() {
+        format!("Before: {}. After: {}.", told(before), told(after))
+    } else {
+        format!("Before: {}.", told(before))
+    };
     Figure::new(format!("unexplained-{i}"), format!("Run {}", before.run), Axis::time())
         .caption(caption)
         .panel(panel)

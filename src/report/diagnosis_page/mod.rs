@@ -30,7 +30,7 @@ const PARTS: [fn(&DiagnosisPage) -> Option<Markup>; 9] = [
 ];
 
 /// What the parts of the page are made from.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 struct DiagnosisPage<'a> {
     diagnosis: &'a Diagnosis,
 }

@@ -7,12 +7,14 @@ use crate::diagnosis::Unexplained;
 use crate::report::document::section;
 use crate::report::figure::{Axis, Figure, Hue, Ink, Panel, Shape};
 
+/// Name, label of the axis, and place of a run on it.
+type View = (&'static str, &'static str, fn(&Unexplained) -> f64);
+
 pub(super) fn part(page: &DiagnosisPage) -> Option<Markup> {
     let pairs = page.worst_first();
     if pairs.len() < 2 {
         return None;
     }
-    type View = (&'static str, &'static str, fn(&Unexplained) -> f64);
     let views: [View; 3] = [
         ("Froude number", "Froude number Fr [–]", |run| run.froude),
         ("frequency", "frequency of rolling [rad/s]", |run| run.frequency_rad_s),
