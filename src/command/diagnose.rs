@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
         Ok(())
     })?;
     for reason in observed.left_out() {
-        tracing::warn!("run left out of the diagnosis: {reason}");
+        tracing::warn!("left out of the diagnosis: {reason}");
     }
     let diagnosis = observed.diagnosed();
     if let Some(diagnosis) = diagnosis.as_ref().filter(|_| arguments.write_model) {

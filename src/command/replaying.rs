@@ -59,6 +59,9 @@ pub(super) fn replay(
     )?;
     drop(terminal);
     if let Some(dir) = into {
+        for reason in observed.left_out() {
+            tracing::warn!("left out of the diagnosis: {reason}");
+        }
         pipeline::write_results(campaign, &results, observed.diagnosed().as_ref(), dir)?;
     }
     for sentence in pipeline::without_runs(&results) {

@@ -3,35 +3,75 @@
 use crate::campaign::Campaign;
 use crate::diagnosis::{self, Diagnosis, Observation};
 use crate::results::IdentifiedRun;
+use crate::run::RunKind;
+
+/// Most runs that are diagnosed together: more repeat each other, and a diagnosis takes time with
+/// their square.
+const MOST_RUNS: usize = 100;
+/// Runs this near in Froude number and roll [rad] are repeats.
+const NEAR: [f64; 2] = [0.02, 0.03];
 
 /// What the diagnosis will see of the runs heard so far.
 pub struct Observed<'c> {
     campaign: &'c Campaign,
     observations: Vec<Observation>,
     left_out: Vec<String>,
+    n_heard: usize,
+    n_repeats: usize,
 }
 
 impl<'c> Observed<'c> {
     /// Nothing yet.
     pub fn new(campaign: &'c Campaign) -> Self {
-        Self { campaign, observations: Vec::new(), left_out: Vec::new() }
+        let (observations, left_out) = (Vec::new(), Vec::new());
+        Self { campaign, observations, left_out, n_heard: 0, n_repeats: 0 }
     }
 
     /// Takes a run whose histories are still with it.
     pub fn hear(&mut self, run: &IdentifiedRun) {
-        match Observation::new(run, self.campaign, self.observations.len()) {
+        match Observation::new(run, self.campaign, self.n_heard) {
             Ok(observation) => self.observations.push(observation),
             Err(reason) => self.left_out.push(format!("{}: {reason}", run.id)),
         }
+        self.n_heard += 1;
+        if self.observations.len() > MOST_RUNS {
+            self.let_go_of_a_repeat();
+        }
     }
 
-    /// The runs that take no part, each with its reason.
-    pub fn left_out(&self) -> &[String] {
-        &self.left_out
+    /// The runs that take no part, each with its reason, as sentences.
+    pub fn left_out(&self) -> Vec<String> {
+        let mut all = self.left_out.clone();
+        if self.n_repeats > 0 {
+            all.push(format!(
+                "{} runs that repeat others: the diagnosis looks at {MOST_RUNS} of all kinds",
+                self.n_repeats
+            ));
+        }
+        all
     }
 
     /// What the runs say; none without runs.
     pub fn diagnosed(self) -> Option<Diagnosis> {
         diagnosis::diagnose(self.observations, &self.campaign.tank)
+    }
+
+    /// Lets go of the second of the runs that have most like them: the first and the last stay.
+    fn let_go_of_a_repeat(&mut self) {
+        let kind = |run: &Observation| -> (String, RunKind, [i64; 3]) {
+            let at = &run.at;
+            let place = |value: f64, near: f64| (value / near).round() as i64;
+            let rolling = if at.kind == RunKind::Forced { place(at.rolling_rad_s, 0.2) } else { 0 };
+            let places = [place(at.froude, NEAR[0]), place(at.amplitude_rad, NEAR[1]), rolling];
+            (run.condition.clone(), at.kind, places)
+        };
+        let kinds: Vec<_> = self.observations.iter().map(kind).collect();
+        let count = |i: usize| kinds.iter().filter(|kind| **kind == kinds[i]).count();
+        let most =
+            (0..kinds.len()).map(|i| (count(i), i)).max_by_key(|(n, i)| (*n, usize::MAX - i));
+        let Some((_, first)) = most else { return };
+        let second = (first + 1..kinds.len()).find(|i| kinds[*i] == kinds[first]);
+        self.observations.remove(second.unwrap_or(first));
+        self.n_repeats += 1;
     }
 }

@@ -12,7 +12,7 @@ pub(super) const EFFECT: Effect = Effect {
     equation: "y'' + 2 z v y' + v^2 y = -phi'', moment -mu y''",
     strengths: &[Parameter::new("mu", "-", 0.03, [0.0, 0.3])],
     shapes: &[Parameter::new("v", "rad/s", 4.0, [6.0, 80.0])],
-    nodes: |_| each(&[10.0, 16.0, 25.0, 38.0]),
+    nodes: |_| each(&[8.0, 10.0, 12.5, 15.5, 17.5, 19.5, 22.0, 25.0, 30.0, 38.0]),
     scope: Scope::Campaign,
     shows: any_run,
     acts: Acts::Lagging(Lag {
