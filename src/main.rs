@@ -8,7 +8,9 @@ use rolltank::command::{self, CommandLine, Exit};
 use tracing_subscriber::EnvFilter;
 
 fn main() -> ExitCode {
-    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("warn"));
+    let line = CommandLine::parse();
+    let filter = EnvFilter::try_from_default_env();
+    let filter = filter.unwrap_or_else(|_| EnvFilter::new(line.log_filter()));
     tracing_subscriber::fmt()
         .with_env_filter(filter)
         .with_writer(io::stderr)
@@ -16,7 +18,6 @@ fn main() -> ExitCode {
         .without_time()
         .with_target(false)
         .init();
-    let line = CommandLine::parse();
     let mut out = io::BufWriter::new(io::stdout().lock());
     let done = command::run(&line, &mut out).and_then(|exit| Ok(out.flush().map(|()| exit)?));
     match done {

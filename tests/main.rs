@@ -1,6 +1,7 @@
 //! Stories.
 #![expect(clippy::print_stdout, reason = "a failing story shows what it saw")]
 
+mod a_decay_at_live_instruments_is_reported;
 mod architecture;
 mod bad_input;
 mod campaign_folder;
@@ -13,6 +14,7 @@ mod hidden_effects_are_named;
 mod hidden_tank;
 mod json_schema;
 mod kvlcc2_is_identified_as_published;
+mod live_tank;
 mod long_campaigns_stay_small;
 mod run_finding_any_stream;
 mod run_finding_decays;

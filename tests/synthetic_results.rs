@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use replay::Columns;
-use rolltank::campaign::{Campaign, Recording, Tank};
+use rolltank::campaign::{Campaign, Live, Recording, Tank};
 use rolltank::hull::{Hull, Water};
 use rolltank::inverse::estimate::Estimate;
 use rolltank::inverse::identification::{
@@ -65,6 +65,7 @@ pub(crate) fn campaign(name: &str) -> Campaign {
         exciter: Some(Exciter { moment_arm_m: 0.43, arm: Arm::Constant, force_sign: 1.0 }),
         columns: Columns::default(),
         recordings,
+        live: Live::default(),
     }
 }
 

@@ -11,6 +11,7 @@ use crate::csv_file::open;
 use crate::csv_stream::{CsvStream, TimeBase};
 use crate::ending;
 use crate::error::ReplayError;
+use crate::live_stream::{DEVICE_TOPIC, LiveStream};
 use crate::mcap_inventory::Inventory;
 use crate::mcap_stream::{McapStream, MessageTime, Place};
 use crate::message::READABLE;
@@ -79,6 +80,12 @@ impl Sources {
         only: Option<Quantity>,
         inventory: &Inventory,
     ) -> Result<(), ReplayError> {
+        if only.is_none() && inventory.encodings.contains_key(DEVICE_TOPIC) {
+            let there = TOPICS.iter().filter(|topic| inventory.encodings.contains_key(topic.name));
+            self.quantities.extend(there.map(|topic| topic.quantity));
+            self.streams.push(Box::new(LiveStream::open(path)?));
+            return Ok(());
+        }
         for topic in &TOPICS {
             let there = inventory.encodings.contains_key(topic.name);
             if only == Some(topic.quantity) && !there {

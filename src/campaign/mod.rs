@@ -1,6 +1,8 @@
 //! The campaign: one day's model, tank and recordings, as written in `campaign.toml`.
 
+mod calibrations;
 mod columns;
+mod live;
 mod mistake;
 mod particulars;
 mod read;
@@ -12,11 +14,14 @@ mod units;
 use std::path::PathBuf;
 
 use devices::Quantity;
+use devices::setup::{DeviceConfig, DeviceSetup};
 use replay::Columns;
 
 use crate::hull::{Hull, Water};
 use crate::roll::exciting_moment::Exciter;
 
+pub use calibrations::{CALIBRATIONS_FILE, TakenCalibration, keep_calibration};
+pub use live::LIVE_FOLDER;
 pub use mistake::Mistake;
 pub use read::{FILE_NAME, read};
 
@@ -39,6 +44,21 @@ pub struct Campaign {
     pub columns: Columns,
     /// The recordings in the order in which they are read.
     pub recordings: Vec<Recording>,
+    /// The instruments of the tank, where there are such.
+    pub live: Live,
+}
+
+/// The instruments of the tank, and what they are recorded under from here on.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Live {
+    /// Loading or appendage condition.
+    pub condition: String,
+    /// Carriage speed [m/s] where none is measured.
+    pub speed_m_s: Option<f64>,
+    /// The devices as written, with the newest calibrations.
+    pub setups: Vec<DeviceSetup>,
+    /// The devices with everything decided.
+    pub devices: Vec<DeviceConfig>,
 }
 
 /// Limits of the tank that runs are checked against.

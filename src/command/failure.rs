@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use super::Exit;
 use crate::campaign::Mistake;
+use crate::live::LiveError;
 use crate::pipeline::{PipelineError, WriteError};
 use crate::tank::{ScenarioError, TankError};
 use ::replay::ReplayError;
@@ -19,6 +20,12 @@ pub enum Failure {
     Campaign {
         /// Every mistake in it.
         mistakes: Vec<Mistake>,
+    },
+    /// The daemon cannot do its work.
+    #[error(transparent)]
+    Live {
+        /// Why not.
+        source: LiveError,
     },
     /// The scenario is wrong.
     #[error(transparent)]
@@ -109,6 +116,15 @@ impl From<Vec<Mistake>> for Failure {
     }
 }
 
+impl From<LiveError> for Failure {
+    fn from(source: LiveError) -> Self {
+        match source {
+            LiveError::Campaign { mistakes } => Self::Campaign { mistakes },
+            source => Self::Live { source },
+        }
+    }
+}
+
 impl Failure {
     /// How the command ends.
     pub fn exit(&self) -> Exit {
@@ -117,7 +133,8 @@ impl Failure {
             | Self::Scenario { .. }
             | Self::ScenarioFile { .. }
             | Self::NotFresh { .. }
-            | Self::InsideCampaign { .. } => Exit::Usage,
+            | Self::InsideCampaign { .. }
+            | Self::Live { source: LiveError::NoDevices { .. } } => Exit::Usage,
             _ => Exit::Failed,
         }
     }
@@ -145,6 +162,7 @@ impl Failure {
 
     fn hint(&self) -> Option<String> {
         match self {
+            Self::Live { source } => source.hint(),
             Self::Replay { source } => source.hint(),
             Self::Import { source } => source.hint(),
             Self::File { .. } => {

@@ -14,6 +14,7 @@ mod reference;
 mod replay;
 mod replaying;
 mod report;
+mod run;
 mod simulate;
 mod tables;
 mod terminal;
@@ -40,6 +41,7 @@ pub struct CommandLine {
 enum Command {
     Demo(demo::Arguments),
     Check(check::Arguments),
+    Run(run::Arguments),
     Replay(replay::Arguments),
     Identify(identify::Arguments),
     Diagnose(diagnose::Arguments),
@@ -50,6 +52,22 @@ enum Command {
     Bench(bench::Arguments),
 }
 
+impl CommandLine {
+    /// What is logged when nothing else is asked for: a daemon tells what it does.
+    pub fn log_filter(&self) -> &'static str {
+        match self.command {
+            Command::Run(_) => "info",
+            _ => "warn",
+        }
+    }
+}
+
+/// A number above zero from the command line.
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| "expected a number above 0, such as 1 or 60".to_owned())
+}
+
 /// Does what the command line asks for; results go to `out`, progress to standard error.
 ///
 /// # Errors
@@ -58,6 +76,7 @@ pub fn run(line: &CommandLine, out: &mut dyn Write) -> Result<Exit, Failure> {
     match &line.command {
         Command::Demo(arguments) => demo::run(arguments, out),
         Command::Check(arguments) => check::run(arguments, out),
+        Command::Run(arguments) => run::run(arguments, out),
         Command::Replay(arguments) => replay::run(arguments, out),
         Command::Identify(arguments) => identify::run(arguments, out),
         Command::Diagnose(arguments) => diagnose::run(arguments, out),

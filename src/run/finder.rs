@@ -78,6 +78,11 @@ impl RunFinder {
         }
     }
 
+    /// Whether neither a run nor any motion is under way, so that nothing is lost by ending here.
+    pub fn is_at_rest(&self) -> bool {
+        self.waiting.is_empty() && self.half_cycles.is_quiet()
+    }
+
     /// The recording has ended: closes whatever was under way.
     pub fn finish(&mut self, events: &mut Vec<Event>) {
         self.drain(events);

@@ -1,0 +1,161 @@
+//! The daemon: one session after the other until it is asked to end.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+
+use devices::clock::WallClock;
+use replay::{ClosedRecording, Finished, ReplayError};
+use tokio::runtime::{Builder, Runtime};
+use tokio::signal::unix::{SignalKind, signal};
+use tokio::sync::mpsc;
+
+use super::error::LiveError;
+use super::event::{Order, Orders};
+use super::keeping::recover;
+use super::session::{self, Lent, Plan};
+use super::status::SharedStatus;
+use super::under_way::Ended;
+use crate::campaign::{self, Campaign, FILE_NAME};
+use crate::results::Results;
+
+/// How the daemon works.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DaemonOptions {
+    /// The campaign's folder.
+    pub folder: PathBuf,
+    /// Age [s] at which a recording gives way to the next when the model is at rest.
+    pub rotate_s: f64,
+}
+
+/// Records, identifies and reports until a signal or an order ends it; what the campaign has
+/// taught by then, where that is known.
+///
+/// # Errors
+/// [`LiveError`] when it cannot begin, or a recording cannot be finished; its part is kept.
+pub fn run(
+    options: &DaemonOptions,
+    clock: &Arc<WallClock>,
+    (sender, mut orders): (Orders, mpsc::Receiver<Order>),
+    status: &SharedStatus,
+) -> Result<Option<Results>, LiveError> {
+    let runtime = runtime()?;
+    listen_to_signals(&runtime, &sender)?;
+    recover(&options.folder)?;
+    let mut campaign = live_campaign(&options.folder)?;
+    let mut earlier = None;
+    let mut converting = Converting::default();
+    loop {
+        let plan = Plan {
+            text: text_of(&options.folder)?,
+            campaign: campaign.clone(),
+            earlier,
+            rotate_s: options.rotate_s,
+        };
+        let handle = runtime.handle();
+        let lent = Lent { runtime: handle, clock, orders: &mut orders, status };
+        let left = session::run(plan, lent)?;
+        converting.start(left.closed)?;
+        earlier = left.results;
+        match left.ended {
+            Ended::Terminated => {
+                converting.finish()?;
+                return Ok(earlier);
+            }
+            Ended::Rotated => campaign.recordings = left.recordings,
+            Ended::Reloaded(new) if particulars(&new) == particulars(&campaign) => {
+                campaign = Campaign { recordings: left.recordings, ..*new };
+            }
+            Ended::Reloaded(_) => {
+                // Another model or tank: every recording says something else under it.
+                converting.finish()?;
+                campaign = live_campaign(&options.folder)?;
+                earlier = None;
+            }
+        }
+    }
+}
+
+/// Conversions of finished recordings, on threads of their own.
+#[derive(Default)]
+struct Converting {
+    threads: Vec<JoinHandle<Result<Finished, ReplayError>>>,
+}
+
+impl Converting {
+    fn start(&mut self, closed: ClosedRecording) -> Result<(), LiveError> {
+        let thread = thread::Builder::new().name("convert".to_owned());
+        let system = |source| LiveError::System { what: "thread".to_owned(), source };
+        self.threads.push(thread.spawn(move || closed.convert()).map_err(system)?);
+        Ok(())
+    }
+
+    /// Waits for all of them; the first error is the last word, and every other one is told.
+    fn finish(&mut self) -> Result<(), LiveError> {
+        let mut failed = None;
+        for thread in self.threads.drain(..) {
+            match thread.join() {
+                Ok(Ok(finished)) => {
+                    let path = finished.path.display().to_string();
+                    tracing::info!(path, file_bytes = finished.file_bytes, "recording finished");
+                }
+                Ok(Err(error)) => {
+                    tracing::error!("recording not finished, its part is kept: {error}");
+                    failed.get_or_insert(error);
+                }
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }
+        failed.map_or(Ok(()), |error| Err(error.into()))
+    }
+}
+
+/// The runtime of signals, timers and sockets: one thread beside the loop's.
+fn runtime() -> Result<Runtime, LiveError> {
+    let built = Builder::new_multi_thread().worker_threads(1).enable_all().build();
+    built.map_err(|source| LiveError::System { what: "runtime".to_owned(), source })
+}
+
+/// Turns SIGTERM, SIGINT and SIGHUP into orders.
+fn listen_to_signals(runtime: &Runtime, orders: &Orders) -> Result<(), LiveError> {
+    let signals = [
+        (SignalKind::terminate(), Order::Terminate),
+        (SignalKind::interrupt(), Order::Terminate),
+        (SignalKind::hangup(), Order::Reload),
+    ];
+    let _inside = runtime.enter();
+    for (kind, order) in signals {
+        let what = || "signal".to_owned();
+        let system = |source| LiveError::System { what: what(), source };
+        let mut signals = signal(kind).map_err(system)?;
+        let orders = orders.clone();
+        runtime.spawn(async move {
+            while signals.recv().await.is_some() {
+                if orders.send(order).await.is_err() {
+                    return;
+                }
+            }
+        });
+    }
+    Ok(())
+}
+
+/// What results depend on beside the recordings; while it stays, they need not be made again.
+fn particulars(campaign: &Campaign) -> Campaign {
+    let live = campaign::Live::default();
+    Campaign { recordings: Vec::new(), live, ..campaign.clone() }
+}
+
+fn live_campaign(folder: &Path) -> Result<Campaign, LiveError> {
+    let campaign = campaign::read(folder)?;
+    if campaign.live.devices.is_empty() {
+        return Err(LiveError::NoDevices { folder: folder.to_owned() });
+    }
+    Ok(campaign)
+}
+
+fn text_of(folder: &Path) -> Result<String, LiveError> {
+    let path = folder.join(FILE_NAME);
+    fs::read_to_string(&path).map_err(|source| LiveError::File { path, source })
+}

@@ -1,0 +1,28 @@
+//! The daemon: instruments in, recordings, runs and reports out, all day.
+//!
+//! ```text
+//! port threads -> Event -> one loop -> recorder            (keeping)
+//!                           |    \---> run finder -> identifying threads -> reporter (reporting)
+//!                           \---> status -> /healthz /readyz /metrics
+//! ```
+//!
+//! A session is one recording: its instruments are attached when it begins and detached when it
+//! ends, so that its raw bytes alone give its samples again. The daemon runs one session after the
+//! other; every queue between threads is bounded, and what finds no place is counted.
+
+mod attached;
+mod attaching;
+mod daemon;
+mod error;
+mod event;
+mod keeping;
+mod reporting;
+mod session;
+pub mod status;
+mod tally;
+mod under_way;
+
+pub use daemon::{DaemonOptions, run};
+pub use error::LiveError;
+pub use event::{Order, Orders, orders};
+pub use status::{SharedStatus, Status};
