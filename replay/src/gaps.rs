@@ -67,6 +67,11 @@ impl Gaps {
         }
     }
 
+    /// The quantity watched.
+    pub fn quantity(&self) -> Quantity {
+        self.quantity
+    }
+
     /// Whether this is the quantity watched.
     pub fn is_of(&self, quantity: Quantity) -> bool {
         self.quantity == quantity

@@ -108,7 +108,9 @@ impl UnderWay<'_> {
             let of_name = live.setups.iter().find(|setup| setup.name == config.name);
             let profile = of_name.map_or("", |setup| setup.profile.as_str());
             let records = Attached::introduction(config, profile, latency_s, time_s)?;
-            records.into_iter().for_each(|record| self.keeper.push(record));
+            for record in records {
+                self.keeper.push(record);
+            }
             self.state.attached.push(Attached::new(config, interpreter));
             forward(scope, device, reader, events.clone(), self.detach.clone());
             self.state.n_attached += 1;
@@ -183,14 +185,12 @@ impl UnderWay<'_> {
             if sample.quantity == Quantity::Roll {
                 state.roll_ns = at_ns;
             }
-            match state.gaps.iter_mut().find(|gaps| gaps.is_of(sample.quantity)) {
-                Some(gaps) => gaps.push(sample),
-                None => {
-                    let mut gaps = Gaps::new(sample.quantity);
-                    gaps.push(sample);
-                    state.gaps.push(gaps);
-                }
+            if !state.gaps.iter().any(|gaps| gaps.is_of(sample.quantity)) {
+                state.gaps.push(Gaps::new(sample.quantity));
+                state.gaps.sort_by_key(Gaps::quantity);
             }
+            let of_it = state.gaps.iter_mut().filter(|gaps| gaps.is_of(sample.quantity));
+            of_it.for_each(|gaps| gaps.push(sample));
         }
         let Some(runs) = &mut self.runs else { return };
         runs.push(samples, &mut state.found);
@@ -295,10 +295,9 @@ impl UnderWay<'_> {
     /// Reads the campaign file again; a wrong one changes nothing.
     fn read_again(&mut self) {
         let read = campaign::read(&self.campaign.folder);
-        let read = read.and_then(|read| match read.live.devices.is_empty() {
-            false => Ok(read),
-            true => Err(vec![super::error::no_devices(&self.campaign.folder)]),
-        });
+        let none = || vec![super::error::no_devices(&self.campaign.folder)];
+        let read =
+            read.and_then(|read| if read.live.devices.is_empty() { Err(none()) } else { Ok(read) });
         match read {
             Ok(read) => {
                 tracing::info!("the new campaign file is in force from the next rest on");
@@ -328,8 +327,9 @@ impl UnderWay<'_> {
         let rested_s = if roll_is_away { f64::INFINITY } else { since_s(state.moved_ns) };
         let may_end = state.ended.is_none() && self.knows_earlier.load(Ordering::Acquire);
         if may_end && rested_s >= RELOAD_REST_S && state.reload.is_some() {
-            let reload = state.reload.take();
-            reload.into_iter().for_each(|campaign| self.end(Ended::Reloaded(campaign)));
+            if let Some(campaign) = state.reload.take() {
+                self.end(Ended::Reloaded(campaign));
+            }
         } else if may_end
             && rested_s >= ROTATE_REST_S
             && since_s(state.began_ns) >= self.rotate_s

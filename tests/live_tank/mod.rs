@@ -13,7 +13,9 @@ use devices::setup::DeviceConfig;
 use rolltank::campaign;
 
 pub(crate) use daemon::Daemon;
-pub(crate) use signals::{B1_PER_S, RELEASED_S, ROUND_S, raw_force, raw_roll, raw_speed};
+pub(crate) use signals::{B1_PER_S, RELEASED_S};
+
+use signals::{ROUND_S, raw_force, raw_roll, raw_speed};
 
 /// The campaign file of the tank, its ports below the folder.
 pub(crate) const CAMPAIGN: &str = r#"name = "emulated tank"
