@@ -13,6 +13,7 @@ mod driven_runs_are_identified;
 mod forced_runs_of_any_course;
 mod hidden_effects_are_named;
 mod hidden_tank;
+mod instruments_are_asked_zeroed_and_calibrated;
 mod json_schema;
 mod kvlcc2_is_identified_as_published;
 mod live_tank;

@@ -15,7 +15,7 @@ const STEPS: [f64; 2] = [1.5, 1.05];
 
 /// Watches one channel's intervals and counts the holes.
 #[derive(Debug, Clone)]
-pub struct Gaps {
+pub(crate) struct Gaps {
     quantity: Quantity,
     samples: u64,
     last_s: f64,
@@ -27,8 +27,7 @@ pub struct Gaps {
 }
 
 impl Gaps {
-    /// A watch over one channel, at its beginning.
-    pub fn new(quantity: Quantity) -> Self {
+    pub(crate) fn new(quantity: Quantity) -> Self {
         Self {
             quantity,
             samples: 0,
@@ -42,7 +41,7 @@ impl Gaps {
     }
 
     /// Takes the channel's next sample.
-    pub fn push(&mut self, sample: &Sample) {
+    pub(crate) fn push(&mut self, sample: &Sample) {
         let interval_s = sample.time_s - self.last_s;
         if self.samples == 1 {
             self.typical_s = interval_s;
@@ -67,18 +66,13 @@ impl Gaps {
         }
     }
 
-    /// The quantity watched.
-    pub fn quantity(&self) -> Quantity {
-        self.quantity
-    }
-
     /// Whether this is the quantity watched.
-    pub fn is_of(&self, quantity: Quantity) -> bool {
+    pub(crate) fn is_of(&self, quantity: Quantity) -> bool {
         self.quantity == quantity
     }
 
     /// Appends what was found so far; `ended` when no sample can follow.
-    pub fn notes(&self, ended: bool, notes: &mut Vec<Note>) {
+    pub(crate) fn notes(&self, ended: bool, notes: &mut Vec<Note>) {
         if ended && self.samples == 0 {
             notes.push(Note::lost(format!(
                 "{}: the recording holds no sample",

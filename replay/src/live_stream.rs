@@ -7,6 +7,7 @@ use devices::driver::Session;
 use devices::{Attachment, InstrumentEvent, Interpreter, Sample};
 
 use crate::error::ReplayError;
+use crate::link_losses::LinkLosses;
 use crate::note::Note;
 use crate::record::{AttachedDevice, Raw, Record};
 use crate::recorded::Recorded;
@@ -25,6 +26,7 @@ pub(crate) struct LiveStream {
     attached: BTreeMap<String, (Session, Interpreter)>,
     waiting: VecDeque<Sample>,
     events: Vec<InstrumentEvent>,
+    losses: LinkLosses,
     samples: u64,
 }
 
@@ -36,6 +38,7 @@ impl LiveStream {
             attached: BTreeMap::new(),
             waiting: VecDeque::new(),
             events: Vec::new(),
+            losses: LinkLosses::default(),
             samples: 0,
         })
     }
@@ -58,7 +61,10 @@ impl LiveStream {
     fn decode(&mut self, raw: &Raw) {
         let Some((session, interpreter)) = self.attached.get_mut(&*raw.device) else { return };
         interpreter.replay(&raw.link_event(), session, &mut self.events);
-        self.waiting.extend(self.events.drain(..).filter_map(|event| event.usable_sample()));
+        for event in self.events.drain(..) {
+            self.losses.push(&raw.device, &event);
+            self.waiting.extend(event.usable_sample());
+        }
     }
 }
 
@@ -87,6 +93,7 @@ impl Stream for LiveStream {
     }
 
     fn notes(&self, notes: &mut Vec<Note>) {
+        self.losses.notes(notes);
         if let Some(offset) = self.recorded.torn_at() {
             notes.push(Note::lost(format!(
                 "\"{}\": the file is torn at byte {offset} of {}, {} samples before it read",

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use devices::Quantity;
 use devices::setup::{self, DeviceConfig, DeviceSetup};
+use devices::{InstrumentError, Quantity};
 use replay::Recorded;
 
 use super::calibrations;
@@ -26,11 +26,10 @@ pub(super) fn read(root: &Section<'_>, folder: &Path) -> Live {
         live.speed_m_s = section.number("speed_m_s", &NOT_NEGATIVE);
         section.close();
     }
-    let mut lines = Vec::new();
     for section in root.sections("device") {
         if let Some(setup) = section.whole::<DeviceSetup>() {
             live.setups.push(setup);
-            lines.push(section.own_line());
+            live.lines.push(section.own_line());
         }
     }
     match calibrations::read(folder) {
@@ -39,17 +38,23 @@ pub(super) fn read(root: &Section<'_>, folder: &Path) -> Live {
     }
     let (devices, mistakes) = setup::check(&live.setups);
     for mistake in mistakes {
-        let is_it = |setup: &DeviceSetup| match mistake.device() {
-            Some(device) => setup.name == device,
-            None => mistake.to_string().contains(&format!("\"{}\"", setup.profile)),
-        };
-        let at = live.setups.iter().rposition(is_it);
-        let line = at.and_then(|at| lines.get(at).copied().flatten());
-        root.mistake_on(line, mistake.to_string(), mistake.hint());
+        root.mistake_on(live.line_of(&mistake), mistake.to_string(), mistake.hint());
     }
     check_channels(root, &devices);
     live.devices = devices;
     live
+}
+
+impl Live {
+    /// The line of the device that a mistake is about, the last one of its name.
+    pub fn line_of(&self, mistake: &InstrumentError) -> Option<usize> {
+        let is_it = |setup: &DeviceSetup| match mistake.device() {
+            Some(device) => setup.name == device,
+            None => mistake.to_string().contains(&format!("\"{}\"", setup.profile)),
+        };
+        let at = self.setups.iter().rposition(is_it)?;
+        self.lines.get(at).copied().flatten()
+    }
 }
 
 /// What takes all channels together to see.

@@ -57,6 +57,8 @@ pub struct Live {
     pub speed_m_s: Option<f64>,
     /// The devices as written, with the newest calibrations.
     pub setups: Vec<DeviceSetup>,
+    /// The lines on which they begin.
+    pub lines: Vec<Option<usize>>,
     /// The devices with everything decided.
     pub devices: Vec<DeviceConfig>,
 }

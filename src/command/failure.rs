@@ -10,6 +10,8 @@ use crate::campaign::Mistake;
 use crate::live::LiveError;
 use crate::pipeline::{PipelineError, WriteError};
 use crate::tank::{ScenarioError, TankError};
+use ::devices::channel::CalibrationError;
+use ::devices::{InstrumentError, Quantity};
 use ::replay::ReplayError;
 
 /// A command that could not do its work.
@@ -26,6 +28,28 @@ pub enum Failure {
     Live {
         /// Why not.
         source: LiveError,
+    },
+    /// An instrument does not do what it should.
+    #[error(transparent)]
+    Instrument {
+        /// What is wrong with it.
+        source: InstrumentError,
+    },
+    /// The readings of a channel make no calibration.
+    #[error("device \"{device}\": {}: {source}", quantity.name())]
+    Calibration {
+        /// The device.
+        device: String,
+        /// The channel.
+        quantity: Quantity,
+        /// Why not.
+        source: CalibrationError,
+    },
+    /// No instrument measures a channel that is to be calibrated.
+    #[error("no [[device]] measures the {}", quantity.name())]
+    NotMeasured {
+        /// The channel.
+        quantity: Quantity,
     },
     /// The scenario is wrong.
     #[error(transparent)]
@@ -134,6 +158,7 @@ impl Failure {
             | Self::ScenarioFile { .. }
             | Self::NotFresh { .. }
             | Self::InsideCampaign { .. }
+            | Self::NotMeasured { .. }
             | Self::Live { source: LiveError::NoDevices { .. } } => Exit::Usage,
             _ => Exit::Failed,
         }
@@ -163,6 +188,7 @@ impl Failure {
     fn hint(&self) -> Option<String> {
         match self {
             Self::Live { source } => source.hint(),
+            Self::Instrument { source } => source.hint(),
             Self::Replay { source } => source.hint(),
             Self::Import { source } => source.hint(),
             Self::File { .. } => {

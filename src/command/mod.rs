@@ -1,8 +1,11 @@
 //! The commands of `rolltank`, one file each.
 
 mod bench;
+mod calibrate;
+mod calibrating;
 mod check;
 mod demo;
+mod devices;
 mod diagnose;
 mod exit;
 mod failure;
@@ -18,6 +21,7 @@ mod run;
 mod simulate;
 mod tables;
 mod terminal;
+mod zero;
 
 use std::io::Write;
 
@@ -42,6 +46,9 @@ enum Command {
     Demo(demo::Arguments),
     Check(check::Arguments),
     Run(run::Arguments),
+    Devices(devices::Arguments),
+    Zero(zero::Arguments),
+    Calibrate(calibrate::Arguments),
     Replay(replay::Arguments),
     Identify(identify::Arguments),
     Diagnose(diagnose::Arguments),
@@ -77,6 +84,9 @@ pub fn run(line: &CommandLine, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Demo(arguments) => demo::run(arguments, out),
         Command::Check(arguments) => check::run(arguments, out),
         Command::Run(arguments) => run::run(arguments, out),
+        Command::Devices(arguments) => devices::run(arguments, out),
+        Command::Zero(arguments) => zero::run(arguments, out),
+        Command::Calibrate(arguments) => calibrate::run(arguments, out),
         Command::Replay(arguments) => replay::run(arguments, out),
         Command::Identify(arguments) => identify::run(arguments, out),
         Command::Diagnose(arguments) => diagnose::run(arguments, out),

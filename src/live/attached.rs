@@ -6,7 +6,9 @@ use devices::channel::Counts;
 use devices::port::LinkEvent;
 use devices::setup::DeviceConfig;
 use devices::{Attachment, InstrumentEvent, Interpreter, Measured, Quality, Quantity, Sample};
-use replay::{AttachedDevice, Calibration, ChannelCounts, Gap, Loss, LossKind, Raw, Record};
+use replay::{
+    AttachedDevice, Calibration, ChannelCounts, Gap, LinkLosses, Loss, LossKind, Raw, Record,
+};
 
 use super::error::LiveError;
 use super::status::{ChannelStatus, DeviceStatus};
@@ -92,7 +94,13 @@ impl Attached {
     }
 
     /// Takes what happened.
-    pub(super) fn take(&mut self, link: &LinkEvent, now_s: f64, taken: &mut Taken) {
+    pub(super) fn take(
+        &mut self,
+        link: &LinkEvent,
+        now_s: f64,
+        losses: &mut LinkLosses,
+        taken: &mut Taken,
+    ) {
         taken.records.extend(Raw::of_link(&self.name, link, now_s).map(Record::Raw));
         self.note_link(link);
         let mut events = std::mem::take(&mut self.events);
@@ -104,6 +112,7 @@ impl Attached {
         let mut missing = 0;
         for event in &events {
             taken.samples.extend(event.usable_sample());
+            losses.push(&self.name, event);
             missing += self.meaning(event, now_s, taken);
         }
         events.clear();

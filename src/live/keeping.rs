@@ -21,9 +21,7 @@ pub(super) struct Keeper {
 
 /// Name of a recording that begins now, relative to the campaign's folder: `live/2026-11-26_081530`.
 pub(super) fn fresh_name(folder: &Path, clock: &WallClock, now_ns: u64) -> String {
-    let unix_ns = clock.start_unix_ns() as i128 + i128::from(now_ns);
-    let stamp = Timestamp::from_nanosecond(unix_ns).unwrap_or_default();
-    let stamp = stamp.strftime("%Y-%m-%d_%H%M%S").to_string();
+    let stamp = stamp(clock, now_ns, "%Y-%m-%d_%H%M%S");
     let taken = |name: &str| {
         let part = format!("{name}.part");
         [name, &part].iter().any(|name| folder.join(name).symlink_metadata().is_ok())
@@ -31,6 +29,12 @@ pub(super) fn fresh_name(folder: &Path, clock: &WallClock, now_ns: u64) -> Strin
     let numbered = (2_u32..).map(|number| format!("{LIVE_FOLDER}/{stamp}_{number}.mcap"));
     let mut names = std::iter::once(format!("{LIVE_FOLDER}/{stamp}.mcap")).chain(numbered);
     names.find(|name| !taken(name)).expect("there are fewer files than numbers")
+}
+
+/// Date and time in UTC at a time of the clock [ns].
+pub fn stamp(clock: &WallClock, now_ns: u64, format: &str) -> String {
+    let unix_ns = clock.start_unix_ns() as i128 + i128::from(now_ns);
+    Timestamp::from_nanosecond(unix_ns).unwrap_or_default().strftime(format).to_string()
 }
 
 impl Keeper {

@@ -25,4 +25,5 @@ mod under_way;
 pub use daemon::{DaemonOptions, run};
 pub use error::LiveError;
 pub use event::{Order, Orders, orders};
+pub use keeping::stamp;
 pub use status::{SharedStatus, Status};

@@ -10,8 +10,8 @@ use devices::clock::{Clock, WallClock};
 use devices::port::LinkEvent;
 use devices::{Instrument, Quantity, Sample};
 use replay::{
-    CampaignFile, ClockReading, ExitStatus, Gaps, Note, Record, Rejection, RunResult, RunStart,
-    RunStop,
+    CampaignFile, ClockReading, ExitStatus, LinkLosses, Note, Record, Rejection, RunResult,
+    RunStart, RunStop,
 };
 use tokio::sync::mpsc::{Receiver, Sender};
 
@@ -67,7 +67,7 @@ pub(super) struct UnderWay<'a> {
 pub(super) struct State {
     attached: Vec<Attached>,
     n_attached: usize,
-    gaps: Vec<Gaps>,
+    losses: LinkLosses,
     found: Vec<Found>,
     taken: Taken,
     /// When the sample came by which each run was known to have ended [ns].
@@ -171,7 +171,7 @@ impl UnderWay<'_> {
         let now_s = now_ns as f64 / 1e9;
         let mut taken = std::mem::take(&mut self.state.taken);
         if let Some(attached) = self.state.attached.get_mut(device) {
-            attached.take(link, now_s, &mut taken);
+            attached.take(link, now_s, &mut self.state.losses, &mut taken);
         }
         taken.records.drain(..).for_each(|record| self.keeper.push(record));
         self.samples(&taken.samples, link.at_ns().unwrap_or(now_ns));
@@ -185,12 +185,6 @@ impl UnderWay<'_> {
             if sample.quantity == Quantity::Roll {
                 state.roll_ns = at_ns;
             }
-            if !state.gaps.iter().any(|gaps| gaps.is_of(sample.quantity)) {
-                state.gaps.push(Gaps::new(sample.quantity));
-                state.gaps.sort_by_key(Gaps::quantity);
-            }
-            let of_it = state.gaps.iter_mut().filter(|gaps| gaps.is_of(sample.quantity));
-            of_it.for_each(|gaps| gaps.push(sample));
         }
         let Some(runs) = &mut self.runs else { return };
         runs.push(samples, &mut state.found);
@@ -287,7 +281,7 @@ impl UnderWay<'_> {
     fn end_runs(&mut self) {
         let Some(runs) = self.runs.take() else { return };
         let mut notes: Vec<Note> = Vec::new();
-        self.state.gaps.iter().for_each(|gaps| gaps.notes(true, &mut notes));
+        self.state.losses.notes(&mut notes);
         runs.end(notes, &mut self.state.found);
         self.take_found(self.clock.now_ns());
     }

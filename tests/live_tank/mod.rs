@@ -33,7 +33,7 @@ condition = "bare hull"
 name = "potentiometer"
 profile = "cobs-board"
 port = "PORTS/potentiometer"
-settings = { fields = 1 }
+settings = { fields = 1, identify = true }
 [[device.channel]]
 quantity = "roll"
 field = 0
