@@ -21,9 +21,13 @@ mod session;
 pub mod status;
 mod tally;
 mod under_way;
+mod virtual_day;
+mod virtual_tank;
 
 pub use daemon::{DaemonOptions, run};
 pub use error::LiveError;
 pub use event::{Order, Orders, orders};
 pub use keeping::stamp;
 pub use status::{SharedStatus, Status};
+pub use virtual_day::{DayEnded, DayProgress, virtual_day};
+pub use virtual_tank::VirtualTank;

@@ -1,0 +1,123 @@
+//! What the daemon tells over HTTP: whether it lives, whether it is ready, its gauges, its status.
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+
+use axum::Router;
+use axum::extract::{Request, State};
+use axum::http::{StatusCode, header};
+use axum::middleware::{self, Next};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use tokio::net::TcpListener;
+
+use super::error::LiveError;
+use super::metrics;
+use super::status::SharedStatus;
+
+/// Where the daemon listens, and to whom.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Listen {
+    /// Address and port.
+    pub address: SocketAddr,
+    /// What a request must carry as `Authorization: Bearer TOKEN`; needed beyond loopback.
+    pub token: Option<String>,
+}
+
+impl Listen {
+    /// Where nobody but this machine can ask.
+    pub const DEFAULT: &'static str = "127.0.0.1:8440";
+}
+
+struct Served {
+    status: SharedStatus,
+    token: Option<String>,
+}
+
+/// Serves until the runtime ends.
+pub(super) fn serve(
+    runtime: &tokio::runtime::Runtime,
+    listen: &Listen,
+    status: &SharedStatus,
+) -> Result<(), LiveError> {
+    let Listen { address, token } = listen;
+    if token.is_none() && !address.ip().is_loopback() {
+        return Err(LiveError::NoToken { address: *address });
+    }
+    let busy = |source| LiveError::Listen { address: *address, source };
+    let listener = runtime.block_on(TcpListener::bind(address)).map_err(busy)?;
+    // Port 0 is any free one, which nobody could find without being told.
+    let address = listener.local_addr().map_err(busy)?;
+    tracing::info!(%address, "serving /healthz, /readyz, /metrics and /status");
+    let served = Arc::new(Served { status: status.clone(), token: token.clone() });
+    let router = Router::new()
+        .route("/healthz", get(|| async { "alive\n" }))
+        .route("/readyz", get(ready))
+        .route("/metrics", get(gauges))
+        .route("/status", get(whole_status))
+        .layer(middleware::from_fn_with_state(Arc::clone(&served), only_with_token))
+        .with_state(served);
+    runtime.spawn(async move {
+        if let Err(error) = axum::serve(listener, router).await {
+            tracing::error!("no longer served: {error}");
+        }
+    });
+    Ok(())
+}
+
+async fn only_with_token(
+    State(served): State<Arc<Served>>,
+    request: Request,
+    next: Next,
+) -> Response {
+    let given = request.headers().get(header::AUTHORIZATION);
+    let given = given.and_then(|value| value.to_str().ok()?.strip_prefix("Bearer "));
+    match &served.token {
+        Some(token) if !given.is_some_and(|given| is_same(given, token)) => {
+            (StatusCode::UNAUTHORIZED, "a token is needed\n").into_response()
+        }
+        _ => next.run(request).await,
+    }
+}
+
+/// Compares in a time that tells nothing of where two texts differ.
+fn is_same(given: &str, token: &str) -> bool {
+    let differing = given.bytes().zip(token.bytes()).fold(0, |all, (a, b)| all | (a ^ b));
+    given.len() == token.len() && differing == 0
+}
+
+async fn ready(State(served): State<Arc<Served>>) -> Response {
+    let status = served.status.now();
+    if status.is_ready() {
+        return "ready\n".into_response();
+    }
+    let waits: Vec<String> = status.waits_for();
+    (StatusCode::SERVICE_UNAVAILABLE, waits.join("\n") + "\n").into_response()
+}
+
+async fn gauges(State(served): State<Arc<Served>>) -> Response {
+    match metrics::text(&served.status.now()) {
+        Ok(text) => ([(header::CONTENT_TYPE, metrics::CONTENT_TYPE)], text).into_response(),
+        Err(error) => (StatusCode::INTERNAL_SERVER_ERROR, error.to_string()).into_response(),
+    }
+}
+
+async fn whole_status(State(served): State<Arc<Served>>) -> Response {
+    match serde_json::to_string_pretty(&served.status.now()) {
+        Ok(text) => ([(header::CONTENT_TYPE, "application/json")], text).into_response(),
+        Err(error) => (StatusCode::INTERNAL_SERVER_ERROR, error.to_string()).into_response(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_same;
+
+    #[test]
+    fn a_token_is_the_same_only_whole() {
+        assert!(is_same("secret", "secret"));
+        for other in ["", "secre", "secrets", "Secret"] {
+            assert!(!is_same(other, "secret"), "{other}");
+        }
+    }
+}
