@@ -33,6 +33,7 @@ mod synthetic_results;
 mod synthetic_roll;
 mod the_band_is_sharp;
 mod the_command_line;
+mod the_daemon_is_watched_and_told_to_reload;
 mod the_exact_posterior_is_the_dense_one;
 mod the_hidden_tank_is_sound;
 mod the_json_contract_holds;

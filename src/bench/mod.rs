@@ -2,6 +2,7 @@
 
 pub mod calibration;
 pub mod drawn_run;
+pub mod live;
 pub mod paper_hyperpriors;
 pub mod ranks;
 pub mod speed;

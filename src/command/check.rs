@@ -40,7 +40,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
             let (mut unreadable, recordings) = survey(&campaign);
             asked = devices::ask_all(&campaign.live.devices, arguments.seconds);
             unreadable.extend(troubles(&campaign, &asked));
-            live = campaign.live.devices.clone();
+            live.clone_from(&campaign.live.devices);
             (campaign.unreachable_speeds(), unreadable, recordings)
         }
     };

@@ -116,7 +116,7 @@ pub(super) fn tell(
         let (name, unit) = (quantity.name(), quantity.unit());
         match last {
             Some(last) => {
-                write!(out, "  {name}: {:.6} {unit}, raw {}", last.sample.value, last.raw)?
+                write!(out, "  {name}: {:.6} {unit}, raw {}", last.sample.value, last.raw)?;
             }
             None => write!(out, "  {name}: no sample")?,
         }

@@ -29,6 +29,7 @@ use clap::{Parser, Subcommand};
 
 pub use exit::Exit;
 pub use failure::Failure;
+pub use run::LogFormat;
 
 /// Roll damping from recorded roll tests, run by run and against Froude number.
 #[derive(Debug, Parser)]
@@ -65,6 +66,14 @@ impl CommandLine {
         match self.command {
             Command::Run(_) => "info",
             _ => "warn",
+        }
+    }
+
+    /// How log lines are to be written.
+    pub fn log_format(&self) -> LogFormat {
+        match &self.command {
+            Command::Run(arguments) => arguments.log_format,
+            _ => LogFormat::Text,
         }
     }
 }

@@ -39,7 +39,12 @@ pub(super) fn forward<'s>(
 ) -> ScopedJoinHandle<'s, ()> {
     scope.spawn(move || {
         while !detach.is_wanted() {
-            let Some(link) = reader.next(WAIT) else { continue };
+            let Some(link) = reader.next(WAIT) else {
+                if reader.is_over() {
+                    break;
+                }
+                continue;
+            };
             if events.blocking_send(Event::Link { device, link }).is_err() {
                 return;
             }

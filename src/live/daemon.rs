@@ -13,9 +13,11 @@ use tokio::sync::mpsc;
 
 use super::error::LiveError;
 use super::event::{Order, Orders};
+use super::health::{Listen, serve};
 use super::keeping::recover;
 use super::session::{self, Lent, Plan};
 use super::status::SharedStatus;
+use super::supervisor::Supervisor;
 use super::under_way::Ended;
 use crate::campaign::{self, Campaign, FILE_NAME};
 use crate::results::Results;
@@ -27,6 +29,8 @@ pub struct DaemonOptions {
     pub folder: PathBuf,
     /// Age [s] at which a recording gives way to the next when the model is at rest.
     pub rotate_s: f64,
+    /// Where health and metrics are served, if anywhere.
+    pub listen: Option<Listen>,
 }
 
 /// Records, identifies and reports until a signal or an order ends it; what the campaign has
@@ -42,8 +46,14 @@ pub fn run(
 ) -> Result<Option<Results>, LiveError> {
     let runtime = runtime()?;
     listen_to_signals(&runtime, &sender)?;
-    recover(&options.folder)?;
     let mut campaign = live_campaign(&options.folder)?;
+    if let Some(listen) = &options.listen {
+        serve(&runtime, listen, status)?;
+    }
+    recover(&options.folder)?;
+    // What was recovered is a recording of the campaign now.
+    campaign.recordings = live_campaign(&options.folder)?.recordings;
+    let mut supervisor = Supervisor::new();
     let mut earlier = None;
     let mut converting = Converting::default();
     loop {
@@ -54,7 +64,13 @@ pub fn run(
             rotate_s: options.rotate_s,
         };
         let handle = runtime.handle();
-        let lent = Lent { runtime: handle, clock, orders: &mut orders, status };
+        let lent = Lent {
+            runtime: handle,
+            clock,
+            orders: &mut orders,
+            status,
+            supervisor: &mut supervisor,
+        };
         let left = session::run(plan, lent)?;
         converting.start(left.closed)?;
         earlier = left.results;
@@ -62,6 +78,10 @@ pub fn run(
             Ended::Terminated => {
                 converting.finish()?;
                 return Ok(earlier);
+            }
+            Ended::Broken => {
+                converting.finish()?;
+                return Err(LiveError::PortThread);
             }
             Ended::Rotated => campaign.recordings = left.recordings,
             Ended::Reloaded(new) if particulars(&new) == particulars(&campaign) => {

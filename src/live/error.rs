@@ -1,6 +1,7 @@
 //! What keeps the daemon from its work.
 
 use std::io;
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use devices::{AttachmentError, InstrumentError};
@@ -53,6 +54,23 @@ pub enum LiveError {
         /// What the system said.
         source: io::Error,
     },
+    /// Listening beyond this machine without a token.
+    #[error("listening on {address}, beyond this machine, needs a token")]
+    NoToken {
+        /// The address.
+        address: SocketAddr,
+    },
+    /// An address that cannot be listened on.
+    #[error("cannot listen on {address}")]
+    Listen {
+        /// The address.
+        address: SocketAddr,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A port's thread has died.
+    #[error("the thread of a port has died; its own message stands above")]
+    PortThread,
     /// The system gives no thread, signal or socket.
     #[error("the system gives no {what}")]
     System {
@@ -77,7 +95,17 @@ impl LiveError {
             Self::File { .. } => {
                 Some("check that the folder can be written and that the disk has room".to_owned())
             }
-            Self::Campaign { .. } | Self::Attachment { .. } | Self::System { .. } => None,
+            Self::NoToken { .. } => {
+                Some("name a file with --token-file, or listen on 127.0.0.1".to_owned())
+            }
+            Self::Listen { .. } => Some(
+                "another daemon may run; name another address with --listen, port 0 for any"
+                    .to_owned(),
+            ),
+            Self::Campaign { .. }
+            | Self::Attachment { .. }
+            | Self::PortThread
+            | Self::System { .. } => None,
         }
     }
 }

@@ -15,6 +15,7 @@ use super::event::{EVENTS_WAITING, Order};
 use super::keeping::{Keeper, fresh_name};
 use super::reporting::Reporter;
 use super::status::SharedStatus;
+use super::supervisor::Supervisor;
 use super::under_way::{Ended, State, UnderWay};
 use crate::campaign::{Campaign, Recording};
 use crate::pipeline::{self, Options};
@@ -49,12 +50,13 @@ pub(super) struct Lent<'l> {
     pub(super) clock: &'l Arc<WallClock>,
     pub(super) orders: &'l mut mpsc::Receiver<Order>,
     pub(super) status: &'l SharedStatus,
+    pub(super) supervisor: &'l mut Supervisor,
 }
 
 /// Records until something ends the session.
 pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
     let Plan { mut campaign, text, earlier, rotate_s } = plan;
-    let Lent { runtime, clock, orders, status } = lent;
+    let Lent { runtime, clock, orders, status, supervisor } = lent;
     let before = campaign.clone();
     let now_ns = clock.now_ns();
     let name = fresh_name(&campaign.folder, clock, now_ns);
@@ -86,6 +88,7 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
             campaign,
             clock,
             status,
+            supervisor,
             keeper,
             runs: Some(runs),
             detach: detach.clone(),
@@ -118,6 +121,7 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
         Ended::Terminated => "the daemon was asked to end",
         Ended::Reloaded(_) => "a new campaign file came into force",
         Ended::Rotated => "it was long enough",
+        Ended::Broken => "the thread of a port died",
     };
     let closed = keeper.close(reason)?;
     let results = results.unwrap_or_else(|panic| std::panic::resume_unwind(panic));

@@ -120,13 +120,31 @@ impl RunsStatus {
 impl Status {
     /// Whether every device is linked, brings samples of every channel, and is recorded.
     pub fn is_ready(&self) -> bool {
-        let streams = |device: &DeviceStatus| {
-            let heard = |channel: &ChannelStatus| {
-                channel.time_s.is_some_and(|time_s| self.at_s - time_s < READY_S)
+        !self.devices.is_empty() && self.waits_for().is_empty()
+    }
+
+    /// What keeps it from being ready, in sentences.
+    pub fn waits_for(&self) -> Vec<String> {
+        let mut waits = Vec::new();
+        if self.recorded.stopped {
+            waits.push("recording has stopped: the disk is full or fails".to_owned());
+        }
+        for device in &self.devices {
+            let name = &device.name;
+            match &device.trouble {
+                Some(trouble) => waits.push(trouble.clone()),
+                None if !device.linked => waits.push(format!("device \"{name}\" is not linked")),
+                None => {}
+            }
+            let is_silent = |channel: &&ChannelStatus| {
+                channel.time_s.is_none_or(|time_s| self.at_s - time_s >= READY_S)
             };
-            device.linked && device.channels.iter().all(heard)
-        };
-        !self.devices.is_empty() && self.devices.iter().all(streams) && !self.recorded.stopped
+            for channel in device.channels.iter().filter(is_silent) {
+                let channel = channel.quantity.name();
+                waits.push(format!("device \"{name}\" brings no {channel}"));
+            }
+        }
+        waits
     }
 }
 

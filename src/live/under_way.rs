@@ -22,6 +22,7 @@ use super::event::{Event, Order};
 use super::keeping::Keeper;
 use super::reporting::Reported;
 use super::status::{RecordedStatus, SharedStatus};
+use super::supervisor::Supervisor;
 use crate::campaign::{self, Campaign};
 use crate::pipeline::{Found, FoundRun, LiveRuns};
 use crate::run::RunKind;
@@ -44,6 +45,8 @@ pub(super) enum Ended {
     Reloaded(Box<Campaign>),
     /// The recording was long enough.
     Rotated,
+    /// A port's thread has died, which a new start may mend.
+    Broken,
 }
 
 /// A recording under way.
@@ -51,6 +54,7 @@ pub(super) struct UnderWay<'a> {
     pub(super) campaign: &'a Campaign,
     pub(super) clock: &'a Arc<WallClock>,
     pub(super) status: &'a SharedStatus,
+    pub(super) supervisor: &'a mut Supervisor,
     pub(super) keeper: Keeper,
     /// Where samples go, until the recording has ended.
     pub(super) runs: Option<LiveRuns<'a>>,
@@ -115,6 +119,7 @@ impl UnderWay<'_> {
             forward(scope, device, reader, events.clone(), self.detach.clone());
             self.state.n_attached += 1;
         }
+        self.supervisor.ready("recording");
         let (campaign, state) = (self.campaign, &self.state);
         self.status.change(|status| {
             status.campaign.clone_from(&campaign.name);
@@ -147,6 +152,10 @@ impl UnderWay<'_> {
                 Event::Link { device, link } => self.link(device, &link),
                 Event::Detached => {
                     self.state.n_attached -= 1;
+                    if self.state.ended.is_none() {
+                        tracing::error!("the thread of a port has died");
+                        self.end(Ended::Broken);
+                    }
                     if self.state.n_attached == 0 {
                         self.end_runs();
                     }
@@ -271,6 +280,9 @@ impl UnderWay<'_> {
 
     /// Detaches the devices, unless that is under way; the rest follows from their last events.
     fn end(&mut self, ended: Ended) {
+        if matches!(ended, Ended::Terminated) {
+            self.supervisor.stopping();
+        }
         if self.state.ended.is_none() || matches!(ended, Ended::Terminated) {
             self.state.ended = Some(ended);
         }
@@ -288,6 +300,7 @@ impl UnderWay<'_> {
 
     /// Reads the campaign file again; a wrong one changes nothing.
     fn read_again(&mut self) {
+        self.supervisor.reloading();
         let read = campaign::read(&self.campaign.folder);
         let none = || vec![super::error::no_devices(&self.campaign.folder)];
         let read =
@@ -310,11 +323,14 @@ impl UnderWay<'_> {
                 self.status.change(|status| status.refused_reload = Some(told.join("; ")));
             }
         }
+        // From here on the daemon follows the file by itself, at the next rest.
+        self.supervisor.ready("recording");
     }
 
     fn tick(&mut self) {
         let now_ns = self.clock.now_ns();
         self.keeper.tick(self.clock.real(now_ns));
+        self.supervisor.alive(self.clock.real(now_ns));
         let since_s = |at_ns: u64| now_ns.saturating_sub(at_ns) as f64 / 1e9;
         let state = &mut self.state;
         let roll_is_away = since_s(state.roll_ns) > ROLL_AWAY_S;

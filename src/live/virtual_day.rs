@@ -47,7 +47,7 @@ calibration = { curve = { gain = 1e-4 }, by = "virtual tank" }
 /// How often the day is looked at.
 const LOOK: Duration = Duration::from_millis(20);
 /// What an instrument may take to attach and be heard [world's time].
-const ATTACH: Duration = Duration::from_secs(60);
+const ATTACH: Duration = Duration::from_mins(1);
 
 /// What a day came to.
 pub struct DayEnded {
@@ -86,7 +86,8 @@ pub fn virtual_day(
     let tank = VirtualTank::plug_in(scenario.clone(), seed, &devices, &clock)?;
     let status = SharedStatus::default();
     let (sender, receiver) = orders();
-    let options = DaemonOptions { folder: folder.to_owned(), rotate_s: f64::INFINITY };
+    let options =
+        DaemonOptions { folder: folder.to_owned(), rotate_s: f64::INFINITY, listen: None };
     let results = thread::scope(|scope| {
         let (clock, status, orders) = (&clock, &status, sender.clone());
         let daemon = scope.spawn(move || run(&options, clock, (orders, receiver), status));

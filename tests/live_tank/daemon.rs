@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use super::LiveTank;
 
 /// Longest wait for anything: the machine may be busy with every other story.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_mins(2);
 
 /// A running `rolltank run`, killed when the story ends.
 pub(crate) struct Daemon {
@@ -20,13 +20,24 @@ pub(crate) struct Daemon {
 impl Daemon {
     /// Starts the daemon on a tank, with more arguments.
     pub(crate) fn start(tank: &LiveTank, arguments: &[&str]) -> Self {
+        Self::start_with(tank, arguments, &[])
+    }
+
+    /// The same with variables of the environment.
+    pub(crate) fn start_with(
+        tank: &LiveTank,
+        arguments: &[&str],
+        environment: &[(&str, &str)],
+    ) -> Self {
         let log = tank.path().join("daemon.log");
         let said = File::options().create(true).append(true).open(&log).expect("a log");
         let child = Command::new(env!("CARGO_BIN_EXE_rolltank"))
             .args(["run", ".", "--clock-speed", &tank.speed.to_string()])
+            .args(["--listen", "127.0.0.1:0"])
             .args(arguments)
             .current_dir(tank.path())
             .env_remove("RUST_LOG")
+            .envs(environment.iter().copied())
             .stdin(Stdio::null())
             .stdout(said.try_clone().expect("another handle"))
             .stderr(said)

@@ -157,6 +157,11 @@ impl LinkReader {
         self.events.recv_timeout(wait).ok()
     }
 
+    /// Whether the port's thread has ended, which it does by itself only when it panics.
+    pub fn is_over(&self) -> bool {
+        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
     /// Closes the port and gives the events that nobody has taken.
     pub fn close(mut self) -> Vec<LinkEvent> {
         self.end();
