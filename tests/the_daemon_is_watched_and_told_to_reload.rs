@@ -109,6 +109,37 @@ fn a_new_campaign_file_comes_into_force_at_rest_and_a_wrong_one_never() {
 }
 
 #[test]
+fn a_zero_is_taken_from_the_daemon_itself_and_in_force_from_the_next_rest_on() {
+    // The model rests for the first six seconds of a round.
+    let tank = LiveTank::at_speed(1.0);
+    let mut daemon = Daemon::start(&tank, &[]);
+    let address = address(&mut daemon);
+    daemon.wait_until("ready", || is_ok(&get(&address, "/readyz", None)));
+    std::thread::sleep(Duration::from_millis(500));
+    let body = "{\"by\": \"C. Costa\", \"note\": \"calm water\"}";
+    let post = |kind: &str| {
+        let mut stream = TcpStream::connect(&address).expect("the daemon listens");
+        let length = body.len();
+        write!(
+            stream,
+            "POST /zero HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Type: {kind}\r\n\
+             Content-Length: {length}\r\n\r\n{body}"
+        )
+        .expect("it takes a request");
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).expect("it answers");
+        answer
+    };
+    assert!(post("text/plain").starts_with("HTTP/1.1 415"), "a page could have sent that");
+    let answer = post("application/json");
+    assert!(is_ok(&answer) && answer.contains("roll of potentiometer: zero "), "{answer}");
+    assert!(tank.text("calibrations.toml").contains("by = \"C. Costa\""));
+    daemon.wait_for("linked", 4);
+    let (status, said) = daemon.terminate();
+    assert_eq!(status.code(), Some(0), "{said}");
+}
+
+#[test]
 fn systemd_hears_that_the_daemon_is_ready_alive_reloading_and_stopping() {
     let tank = LiveTank::at_speed(1.0);
     let path = tank.path().join("notify");

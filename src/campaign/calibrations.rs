@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use devices::Quantity;
-use devices::channel::Calibration;
+use devices::channel::{Calibration, Channel};
 use devices::setup::DeviceSetup;
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +24,47 @@ pub struct TakenCalibration {
     /// Zero and curve, by whom and when.
     #[serde(flatten)]
     pub calibration: Calibration,
+}
+
+/// Raw readings of nothing, and by whom and when they were taken.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ZeroTaken {
+    /// Readings.
+    pub n_readings: usize,
+    /// Their mean.
+    pub mean: f64,
+    /// Their standard deviation.
+    pub sd: f64,
+    /// Who took them.
+    pub by: String,
+    /// When.
+    pub at: String,
+    /// Remark.
+    pub note: String,
+}
+
+impl ZeroTaken {
+    /// The calibration of a channel with this zero, and a sentence about the change.
+    pub fn applied(&self, device: &str, channel: &Channel) -> (TakenCalibration, String) {
+        let Self { n_readings, mean, sd, .. } = self;
+        let (quantity, before) = (channel.quantity, &channel.calibration);
+        let told = format!(
+            "{} of {device}: zero {mean} (was {}, off by {:.6} {}), {n_readings} readings, sd \
+             {sd:.4}",
+            quantity.name(),
+            before.zero_raw,
+            before.value(*mean),
+            quantity.unit(),
+        );
+        let calibration = Calibration {
+            zero_raw: *mean,
+            by: self.by.clone(),
+            at: self.at.clone(),
+            note: self.note.clone(),
+            curve: before.curve.clone(),
+        };
+        (TakenCalibration { device: device.to_owned(), quantity, calibration }, told)
+    }
 }
 
 #[derive(Debug, Default, Serialize, Deserialize)]
@@ -96,7 +137,8 @@ mod tests {
         let taken = read(folder.path()).unwrap();
         assert_eq!(taken.len(), 2);
         let text = "name = \"cell\"\nprofile = \"cobs-board\"\nport = \"p\"\n\
-            [[channel]]\nquantity = \"force\"\nfield = 0\n[[channel]]\nquantity = \"roll\"\nfield = 1";
+            [[channel]]\nquantity = \"force\"\nfield = 0\n\
+            [[channel]]\nquantity = \"roll\"\nfield = 1";
         let mut setups: [DeviceSetup; 1] = [toml::from_str(text).unwrap()];
         apply(&taken, &mut setups);
         let zeros: Vec<f64> = setups[0].channels.iter().map(|c| c.calibration.zero_raw).collect();

@@ -20,7 +20,7 @@ use replay::Columns;
 use crate::hull::{Hull, Water};
 use crate::roll::exciting_moment::Exciter;
 
-pub use calibrations::{CALIBRATIONS_FILE, TakenCalibration, keep_calibration};
+pub use calibrations::{CALIBRATIONS_FILE, TakenCalibration, ZeroTaken, keep_calibration};
 pub use live::LIVE_FOLDER;
 pub use mistake::Mistake;
 pub use read::{FILE_NAME, read};

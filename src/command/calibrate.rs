@@ -1,4 +1,4 @@
-//! `rolltank calibrate`: gain and zero of one channel from known loads, applied one after the other.
+//! `rolltank calibrate`: gain and zero of one channel from known loads, one after the other.
 
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::PathBuf;
@@ -9,9 +9,9 @@ use clap::Args;
 
 use super::calibrating::{ChannelName, device_of, keep, now, readings};
 use super::{Exit, Failure};
-use crate::campaign;
+use crate::campaign::{self, TakenCalibration};
 
-/// Calibrate a channel by known loads: apply one, enter its value, and so on; the daemon must not run
+/// Calibrate a channel by known loads: apply one, enter it, and so on; the daemon must not run
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Folder that holds campaign.toml
@@ -74,7 +74,8 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
         quantity.unit(),
         quantity.unit(),
     )?;
-    keep(&arguments.campaign, device, quantity, calibration)?;
+    let taken = TakenCalibration { device: device.name.clone(), quantity, calibration };
+    keep(&arguments.campaign, taken)?;
     Ok(Exit::Done)
 }
 

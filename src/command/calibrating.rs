@@ -4,7 +4,6 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-use ::devices::channel::Calibration;
 use ::devices::clock::{Clock, WallClock};
 use ::devices::setup::DeviceConfig;
 use ::devices::{Instrument, InstrumentEvent, Quantity};
@@ -79,15 +78,8 @@ pub(super) fn readings(
 }
 
 /// Keeps a calibration beside the campaign file, in force from the next recording on.
-pub(super) fn keep(
-    folder: &Path,
-    device: &DeviceConfig,
-    quantity: Quantity,
-    calibration: Calibration,
-) -> Result<(), Failure> {
+pub(super) fn keep(folder: &Path, taken: TakenCalibration) -> Result<(), Failure> {
     let path = folder.join(campaign::CALIBRATIONS_FILE);
-    let device = device.name.clone();
-    let taken = TakenCalibration { device, quantity, calibration };
     campaign::keep_calibration(folder, taken).map_err(|source| Failure::File { path, source })
 }
 

@@ -32,7 +32,7 @@ pub(super) struct Arguments {
     #[arg(long, value_enum, default_value_t = LogFormat::Text)]
     pub(super) log_format: LogFormat,
     /// Seconds of the instruments' own time in one second, for simulated instruments
-    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = super::positive, hide = true)]
+    #[arg(long, hide = true, default_value_t = 1.0, value_parser = super::positive)]
     clock_speed: f64,
 }
 

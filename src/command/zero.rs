@@ -4,12 +4,12 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use ::devices::Quantity;
-use ::devices::channel::{Calibration, zero_from_readings};
+use ::devices::channel::zero_from_readings;
 use clap::Args;
 
 use super::calibrating::{ChannelName, keep, now, readings};
 use super::{Exit, Failure};
-use crate::campaign;
+use crate::campaign::{self, ZeroTaken};
 use crate::live::LiveError;
 
 /// Take zeros with the model upright and still and the rod unloaded; the daemon must not run
@@ -51,27 +51,22 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
         let raw = readings(device, &quantities, arguments.seconds)?;
         for (channel, raw) in channels().zip(raw) {
             let quantity = channel.quantity;
-            let (zero_raw, sd) = zero_from_readings(&raw).map_err(|source| {
-                Failure::Calibration { device: device.name.clone(), quantity, source }
+            let (mean, sd) = zero_from_readings(&raw).map_err(|source| Failure::Calibration {
+                device: device.name.clone(),
+                quantity,
+                source,
             })?;
-            let before = channel.calibration.value(zero_raw);
-            let calibration = Calibration {
-                zero_raw,
+            let taken = ZeroTaken {
+                n_readings: raw.len(),
+                mean,
+                sd,
                 by: arguments.by.clone(),
                 at: now(),
                 note: arguments.note.clone(),
-                ..channel.calibration.clone()
             };
-            writeln!(
-                out,
-                "{} of {}: zero {zero_raw} (was {}, off by {before:.6} {}), {} readings, sd {sd:.4}",
-                quantity.name(),
-                device.name,
-                channel.calibration.zero_raw,
-                quantity.unit(),
-                raw.len(),
-            )?;
-            keep(&arguments.campaign, device, quantity, calibration)?;
+            let (calibration, sentence) = taken.applied(&device.name, channel);
+            keep(&arguments.campaign, calibration)?;
+            writeln!(out, "{sentence}")?;
         }
     }
     Ok(Exit::Done)

@@ -1,8 +1,9 @@
 //! One attached device: from what happened on its link to records, samples and its status.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
-use devices::channel::Counts;
+use devices::channel::{Counts, zero_from_readings};
 use devices::port::LinkEvent;
 use devices::setup::DeviceConfig;
 use devices::{Attachment, InstrumentEvent, Interpreter, Measured, Quality, Quantity, Sample};
@@ -11,7 +12,7 @@ use replay::{
 };
 
 use super::error::LiveError;
-use super::status::{ChannelStatus, DeviceStatus};
+use super::status::{ChannelStatus, DeviceStatus, RecentRaw};
 use super::tally::Tally;
 
 /// A device of the session.
@@ -30,7 +31,12 @@ struct AttachedChannel {
     counts: Counts,
     tally: Tally,
     last: Option<Measured>,
+    /// Times [s] and raw readings of the last seconds.
+    recent: VecDeque<(f64, f64)>,
 }
+
+/// Raw readings so old [s] are forgotten; a zero is taken from those before.
+const RECENT_S: f64 = 5.0;
 
 /// What one event means.
 #[derive(Default)]
@@ -41,6 +47,26 @@ pub(super) struct Taken {
     pub(super) samples: Vec<Sample>,
 }
 
+impl AttachedChannel {
+    fn remember(&mut self, measured: &Measured) {
+        self.last = Some(*measured);
+        let time_s = measured.sample.time_s;
+        if measured.quality.is_usable() {
+            self.recent.push_back((time_s, measured.raw));
+        }
+        while self.recent.front().is_some_and(|(at_s, _)| *at_s < time_s - RECENT_S) {
+            self.recent.pop_front();
+        }
+    }
+
+    /// Mean and standard deviation of the raw readings of the last seconds, and how many they are.
+    fn recent(&self) -> Option<RecentRaw> {
+        let raw: Vec<f64> = self.recent.iter().map(|(_, raw)| *raw).collect();
+        let (mean, sd) = zero_from_readings(&raw).ok()?;
+        Some(RecentRaw { n_readings: raw.len(), mean, sd })
+    }
+}
+
 impl Attached {
     pub(super) fn new(config: &DeviceConfig, interpreter: Interpreter) -> Self {
         let channel = |quantity| AttachedChannel {
@@ -48,6 +74,7 @@ impl Attached {
             counts: Counts::default(),
             tally: Tally::default(),
             last: None,
+            recent: VecDeque::new(),
         };
         Self {
             name: config.name.as_str().into(),
@@ -156,7 +183,7 @@ impl Attached {
                 }
                 let of = measured.sample.quantity;
                 let channels = self.channels.iter_mut().filter(|channel| channel.quantity == of);
-                channels.for_each(|channel| channel.last = Some(*measured));
+                channels.for_each(|channel| channel.remember(measured));
             }
             InstrumentEvent::Gap { from_s, to_s, n_missing } => {
                 let reason = self.lost_because.take();
@@ -228,6 +255,7 @@ impl Attached {
             time_s: channel.last.map(|last| last.sample.time_s),
             quality: channel.last.map_or(Quality::GOOD, |last| last.quality).names().collect(),
             bound_s: channel.last.map(|last| last.bound_s),
+            recent: channel.recent(),
             counts: channel.counts,
         };
         DeviceStatus {

@@ -48,7 +48,7 @@ pub fn run(
     listen_to_signals(&runtime, &sender)?;
     let mut campaign = live_campaign(&options.folder)?;
     if let Some(listen) = &options.listen {
-        serve(&runtime, listen, status)?;
+        serve(&runtime, listen, (&options.folder, status, &sender))?;
     }
     recover(&options.folder)?;
     // What was recovered is a recording of the campaign now.

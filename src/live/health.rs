@@ -1,19 +1,22 @@
 //! What the daemon tells over HTTP: whether it lives, whether it is ready, its gauges, its status.
 
 use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use axum::Router;
 use axum::extract::{Request, State};
 use axum::http::{StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
-use axum::routing::get;
+use axum::routing::{get, post};
+use axum::{Json, Router};
 use tokio::net::TcpListener;
 
 use super::error::LiveError;
+use super::event::{Order, Orders};
 use super::metrics;
 use super::status::SharedStatus;
+use super::zeroing::{ZeroRequest, zero};
 
 /// Where the daemon listens, and to whom.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -32,13 +35,15 @@ impl Listen {
 struct Served {
     status: SharedStatus,
     token: Option<String>,
+    folder: PathBuf,
+    orders: Orders,
 }
 
 /// Serves until the runtime ends.
 pub(super) fn serve(
     runtime: &tokio::runtime::Runtime,
     listen: &Listen,
-    status: &SharedStatus,
+    (folder, status, orders): (&Path, &SharedStatus, &Orders),
 ) -> Result<(), LiveError> {
     let Listen { address, token } = listen;
     if token.is_none() && !address.ip().is_loopback() {
@@ -49,12 +54,18 @@ pub(super) fn serve(
     // Port 0 is any free one, which nobody could find without being told.
     let address = listener.local_addr().map_err(busy)?;
     tracing::info!(%address, "serving /healthz, /readyz, /metrics and /status");
-    let served = Arc::new(Served { status: status.clone(), token: token.clone() });
+    let served = Arc::new(Served {
+        status: status.clone(),
+        token: token.clone(),
+        folder: folder.to_owned(),
+        orders: orders.clone(),
+    });
     let router = Router::new()
         .route("/healthz", get(|| async { "alive\n" }))
         .route("/readyz", get(ready))
         .route("/metrics", get(gauges))
         .route("/status", get(whole_status))
+        .route("/zero", post(take_zero))
         .layer(middleware::from_fn_with_state(Arc::clone(&served), only_with_token))
         .with_state(served);
     runtime.spawn(async move {
@@ -106,6 +117,18 @@ async fn whole_status(State(served): State<Arc<Served>>) -> Response {
     match serde_json::to_string_pretty(&served.status.now()) {
         Ok(text) => ([(header::CONTENT_TYPE, "application/json")], text).into_response(),
         Err(error) => (StatusCode::INTERNAL_SERVER_ERROR, error.to_string()).into_response(),
+    }
+}
+
+/// Only JSON is taken, which no page of another site can send without being allowed to.
+async fn take_zero(State(served): State<Arc<Served>>, Json(asked): Json<ZeroRequest>) -> Response {
+    match zero(&served.folder, &served.status.now(), &asked) {
+        Ok(told) => {
+            // It comes into force as every change does: at the next rest.
+            served.orders.send(Order::Reload).await.ok();
+            told.into_response()
+        }
+        Err(why) => (StatusCode::CONFLICT, why).into_response(),
     }
 }
 

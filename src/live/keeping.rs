@@ -19,7 +19,8 @@ pub(super) struct Keeper {
     n_refused: u64,
 }
 
-/// Name of a recording that begins now, relative to the campaign's folder: `live/2026-11-26_081530`.
+/// Name of a recording that begins now, relative to the campaign's folder:
+/// `live/2026-11-26_081530.mcap`.
 pub(super) fn fresh_name(folder: &Path, clock: &WallClock, now_ns: u64) -> String {
     let stamp = stamp(clock, now_ns, "%Y-%m-%d_%H%M%S");
     let taken = |name: &str| {

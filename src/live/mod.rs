@@ -23,9 +23,11 @@ mod session;
 pub mod status;
 mod supervisor;
 mod tally;
+mod telling;
 mod under_way;
 mod virtual_day;
 mod virtual_tank;
+mod zeroing;
 
 pub use daemon::{DaemonOptions, run};
 pub use error::LiveError;

@@ -69,8 +69,21 @@ pub struct ChannelStatus {
     pub quality: Vec<&'static str>,
     /// Its time is at most so far off [s].
     pub bound_s: Option<f64>,
+    /// Its raw readings of the last seconds.
+    pub recent: Option<RecentRaw>,
     /// Counts since the session began.
     pub counts: Counts,
+}
+
+/// Raw readings of the last seconds, from which a zero can be taken.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct RecentRaw {
+    /// How many.
+    pub n_readings: usize,
+    /// Their mean.
+    pub mean: f64,
+    /// Their standard deviation.
+    pub sd: f64,
 }
 
 /// What the recorder has done.

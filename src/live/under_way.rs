@@ -9,10 +9,7 @@ use std::time::Duration;
 use devices::clock::{Clock, WallClock};
 use devices::port::LinkEvent;
 use devices::{Instrument, Quantity, Sample};
-use replay::{
-    CampaignFile, ClockReading, ExitStatus, LinkLosses, Note, Record, Rejection, RunResult,
-    RunStart, RunStop,
-};
+use replay::{CampaignFile, ClockReading, LinkLosses, Note, Record};
 use tokio::sync::mpsc::{Receiver, Sender};
 
 use super::attached::{Attached, Taken};
@@ -20,12 +17,10 @@ use super::attaching::{Detach, forward};
 use super::error::LiveError;
 use super::event::{Event, Order};
 use super::keeping::Keeper;
-use super::reporting::Reported;
 use super::status::{RecordedStatus, SharedStatus};
 use super::supervisor::Supervisor;
 use crate::campaign::{self, Campaign};
-use crate::pipeline::{Found, FoundRun, LiveRuns};
-use crate::run::RunKind;
+use crate::pipeline::{Found, LiveRuns};
 
 /// How often time is told to the loop.
 const TICK: Duration = Duration::from_millis(50);
@@ -69,21 +64,21 @@ pub(super) struct UnderWay<'a> {
 /// What changes from event to event.
 #[derive(Default)]
 pub(super) struct State {
-    attached: Vec<Attached>,
-    n_attached: usize,
-    losses: LinkLosses,
-    found: Vec<Found>,
-    taken: Taken,
+    pub(super) attached: Vec<Attached>,
+    pub(super) n_attached: usize,
+    pub(super) losses: LinkLosses,
+    pub(super) found: Vec<Found>,
+    pub(super) taken: Taken,
     /// When the sample came by which each run was known to have ended [ns].
-    decided_ns: BTreeMap<u64, u64>,
-    began_ns: u64,
+    pub(super) decided_ns: BTreeMap<u64, u64>,
+    pub(super) began_ns: u64,
     /// When the model last moved, and when a sample of its roll last came [ns].
-    moved_ns: u64,
-    roll_ns: u64,
-    n_events: u64,
-    reload: Option<Box<Campaign>>,
-    ended: Option<Ended>,
-    all_reported: bool,
+    pub(super) moved_ns: u64,
+    pub(super) roll_ns: u64,
+    pub(super) n_events: u64,
+    pub(super) reload: Option<Box<Campaign>>,
+    pub(super) ended: Option<Ended>,
+    pub(super) all_reported: bool,
 }
 
 impl UnderWay<'_> {
@@ -99,12 +94,7 @@ impl UnderWay<'_> {
         self.state.began_ns = now_ns;
         (self.state.moved_ns, self.state.roll_ns) = (now_ns, now_ns);
         self.keeper.push(Record::Campaign(CampaignFile { time_s, text }));
-        self.keeper.push(Record::Clock(ClockReading {
-            time_s,
-            monotonic_ns: now_ns,
-            realtime_ns: u64::try_from(self.clock.start_unix_ns()).unwrap_or_default() + now_ns,
-            tai_offset_s: 0,
-        }));
+        self.read_clocks();
         let live = &self.campaign.live;
         for (device, config) in live.devices.iter().enumerate() {
             let clock = Arc::clone(self.clock) as Arc<dyn Clock>;
@@ -131,6 +121,17 @@ impl UnderWay<'_> {
             status.reload_waits = false;
         });
         Ok(())
+    }
+
+    /// Both clocks at once: what differs between two such records is a step or a drift.
+    fn read_clocks(&mut self) {
+        let monotonic_ns = self.clock.now_ns();
+        self.keeper.push(Record::Clock(ClockReading {
+            time_s: monotonic_ns as f64 / 1e9,
+            monotonic_ns,
+            realtime_ns: u64::try_from(WallClock::unix_ns()).unwrap_or_default(),
+            tai_offset_s: 0,
+        }));
     }
 
     /// Takes events until the recording has ended and every run of it was reported.
@@ -203,81 +204,6 @@ impl UnderWay<'_> {
         self.take_found(at_ns);
     }
 
-    fn take_found(&mut self, at_ns: u64) {
-        let time_s = self.clock.now_ns() as f64 / 1e9;
-        for found in std::mem::take(&mut self.state.found) {
-            match found {
-                Found::Run(run) => {
-                    self.state.decided_ns.insert(run.number, at_ns);
-                    self.found_run(&run, time_s);
-                    self.status.change(|status| status.runs.n_found += 1);
-                }
-                Found::Rejected(rejection) => {
-                    let crate::run::Rejection { start_s, end_s, reason } = rejection;
-                    tracing::info!(start_s, end_s, "not used: {reason}");
-                    self.keeper.push(Record::Rejection(Rejection {
-                        time_s,
-                        start_s,
-                        end_s,
-                        reason,
-                    }));
-                    self.status.change(|status| status.runs.n_rejected += 1);
-                }
-            }
-        }
-    }
-
-    fn found_run(&mut self, found: &FoundRun, time_s: f64) {
-        let FoundRun { start_s, end_s, end, .. } = *found;
-        let run = name_of(found);
-        let kind = match found.kind {
-            RunKind::Decay => "decay",
-            RunKind::Forced => "forced",
-        };
-        tracing::info!(run, kind, start_s, end_s, "run found");
-        let condition = self.campaign.live.condition.clone();
-        self.keeper.push(Record::RunStart(RunStart {
-            time_s,
-            run: run.clone(),
-            kind: kind.to_owned(),
-            condition,
-            start_s,
-        }));
-        let counts = self.state.attached.iter();
-        let counts = counts.flat_map(|attached| attached.counts(start_s, end_s)).collect();
-        let reason = end.clause().to_owned();
-        let exit_status = ExitStatus::Success;
-        let stop = RunStop { time_s, run, start_s, end_s, exit_status, reason, counts };
-        self.keeper.push(Record::RunStop(stop));
-    }
-
-    fn reported(&mut self, reported: Reported) {
-        let Reported { found, outcome, at_ns } = reported;
-        let time_s = self.clock.now_ns() as f64 / 1e9;
-        match outcome {
-            Ok(identified) => {
-                let decided_ns = self.state.decided_ns.remove(&found.number).unwrap_or(at_ns);
-                let latency = self.clock.real(at_ns.saturating_sub(decided_ns));
-                let latency_s = latency.as_secs_f64();
-                tracing::info!(run = identified.id, latency_s, "{}", identified.summary);
-                self.keeper.push(Record::Result(RunResult {
-                    time_s,
-                    run: name_of(&found),
-                    schema: crate::report::IDENTIFICATION_NAME.to_owned(),
-                    document: identified.document,
-                }));
-                self.status.change(|status| status.runs.reported(latency_s));
-            }
-            Err(reason) => {
-                let (start_s, end_s) = (found.start_s, found.end_s);
-                tracing::warn!(start_s, end_s, "run refused: {reason}");
-                let rejection = Rejection { time_s, start_s, end_s, reason };
-                self.keeper.push(Record::Rejection(rejection));
-                self.status.change(|status| status.runs.n_refused += 1);
-            }
-        }
-    }
-
     /// Detaches the devices, unless that is under way; the rest follows from their last events.
     fn end(&mut self, ended: Ended) {
         if matches!(ended, Ended::Terminated) {
@@ -294,6 +220,7 @@ impl UnderWay<'_> {
         let Some(runs) = self.runs.take() else { return };
         let mut notes: Vec<Note> = Vec::new();
         self.state.losses.notes(&mut notes);
+        self.read_clocks();
         runs.end(notes, &mut self.state.found);
         self.take_found(self.clock.now_ns());
     }
@@ -367,9 +294,4 @@ impl UnderWay<'_> {
             };
         });
     }
-}
-
-/// Name of a run in its recording; results number only those that say something.
-fn name_of(found: &FoundRun) -> String {
-    format!("found-{}", found.number)
 }
