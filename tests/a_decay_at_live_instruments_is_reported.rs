@@ -37,3 +37,21 @@ fn a_decay_is_identified_as_it_ends_and_again_from_its_raw_bytes_to_the_bit() {
     assert_eq!(replayed.exit, 0, "{}", replayed.err);
     assert_eq!(replayed.out, live, "{said}");
 }
+
+#[test]
+fn a_long_day_is_several_recordings_that_follow_each_other_at_rests() {
+    let tank = LiveTank::calm_at_speed(20.0);
+    let mut daemon = Daemon::start(&tank, &["--rotate", "0.6"]);
+    daemon.wait_for("linked", 6);
+    let (status, said) = daemon.terminate();
+    assert_eq!(status.code(), Some(0), "{said}");
+    let recordings = tank.files("live", ".mcap");
+    assert_eq!(recordings.len(), 3, "{said}");
+    assert!(tank.files("live", ".part").is_empty(), "{said}");
+    for recording in &recordings {
+        let recorded = replay::Recorded::open(recording).expect("it is whole");
+        assert_eq!(recorded.metadata()["exit_status"], "success");
+    }
+    let told = rolltank(tank.path(), &["check", ".", "--seconds", "0.3"]);
+    assert!(told.out.contains("live/") && told.out.contains("roll "), "{}", told.out);
+}

@@ -50,7 +50,10 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
         listed
     } else {
         root.leave("recording");
-        found(source, folder, folder)
+        let mut all = found(source, folder, folder);
+        // The daemon adds to these, and their runs are numbered behind those of all others.
+        all.sort_by_key(recordings::is_live);
+        all
     };
     if recordings.is_empty() && !is_live && !root.holds("recording") {
         let hint = "put the recordings (*.mcap, *.csv) beside campaign.toml, or describe the \

@@ -76,7 +76,7 @@ pub(super) fn found(folder: &Path, paths: Vec<PathBuf>) -> Vec<Recording> {
 }
 
 /// Whether a recording lies where the campaign's own instruments leave theirs.
-fn is_live(recording: &Recording) -> bool {
+pub(super) fn is_live(recording: &Recording) -> bool {
     recording.name.starts_with(&format!("{LIVE_FOLDER}/"))
 }
 

@@ -55,23 +55,28 @@ pub(crate) struct LiveTank {
     ports: Vec<EmulatedPort>,
     pub(crate) clock: Arc<WallClock>,
     pub(crate) speed: f64,
+    is_calm: bool,
 }
 
 impl LiveTank {
     /// Plugs every instrument of [`CAMPAIGN`] in, on a clock of that speed.
     pub(crate) fn at_speed(speed: f64) -> Self {
-        Self::with(CAMPAIGN, speed)
+        Self::with(speed, false)
     }
 
-    /// The same for another campaign file with its ports below `PORTS/`.
-    pub(crate) fn with(text: &str, speed: f64) -> Self {
+    /// The same with a model that nobody touches.
+    pub(crate) fn calm_at_speed(speed: f64) -> Self {
+        Self::with(speed, true)
+    }
+
+    fn with(speed: f64, is_calm: bool) -> Self {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let ports = folder.path().join("ports");
         fs::create_dir(&ports).expect("it is empty");
-        let text = text.replace("PORTS", &ports.display().to_string());
+        let text = CAMPAIGN.replace("PORTS", &ports.display().to_string());
         fs::write(folder.path().join("campaign.toml"), text).expect("the disk has room");
         let clock = Arc::new(WallClock::start_at_speed(speed));
-        let mut tank = Self { folder, ports: Vec::new(), clock, speed };
+        let mut tank = Self { folder, ports: Vec::new(), clock, speed, is_calm };
         let campaign = campaign::read(tank.path()).unwrap_or_else(|error| panic!("{error:?}"));
         for device in &campaign.live.devices {
             let port = tank.plugged_in(device);
@@ -81,8 +86,10 @@ impl LiveTank {
     }
 
     fn plugged_in(&self, device: &DeviceConfig) -> EmulatedPort {
-        let quantity = device.channels[0].quantity;
+        let (quantity, is_calm) = (device.channels[0].quantity, self.is_calm);
         let signal = move |_field: usize, time_s: f64| match quantity {
+            // The middle of the rest between two rounds.
+            devices::Quantity::Roll if is_calm => raw_roll((time_s % 2.0) + 1.0),
             devices::Quantity::Roll => raw_roll(time_s),
             devices::Quantity::Speed => raw_speed(time_s),
             _ => raw_force(time_s),
