@@ -43,6 +43,7 @@ pub use error::ReplayError;
 pub use folder::list_recordings;
 pub use import::{ImportReport, import};
 pub use link_losses::LinkLosses;
+pub use live_stream::LIVE_SOURCE;
 pub use nearest::edit_distance;
 pub use note::{Note, Severity};
 pub use number::CellFault;

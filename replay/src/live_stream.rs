@@ -13,8 +13,15 @@ use crate::record::{AttachedDevice, Raw, Record};
 use crate::recorded::Recorded;
 use crate::stream::Stream;
 
-/// Topic whose messages make a recording one of live instruments.
-pub(crate) const DEVICE_TOPIC: &str = "/device";
+/// [`Provenance::source`](crate::Provenance) of a recording whose raw bytes its own drivers decode.
+pub const LIVE_SOURCE: &str = "live instruments";
+/// Topic of the devices, with all that decoding their bytes takes.
+const DEVICE_TOPIC: &str = "/device";
+
+/// Whether a recording says of itself that its raw bytes give its samples.
+pub(crate) fn is_live(metadata: &BTreeMap<String, String>) -> bool {
+    metadata.get("source").is_some_and(|source| source == LIVE_SOURCE)
+}
 
 /// Samples of one recording in the order in which they came.
 ///

@@ -7,7 +7,8 @@ use std::time::Duration;
 use devices::clock::WallClock;
 use jiff::Timestamp;
 use replay::{
-    ClosedRecording, Exit, LocalDisk, Progress, Provenance, Record, Recorder, ReplayError, Settings,
+    ClosedRecording, Exit, LIVE_SOURCE, LocalDisk, Progress, Provenance, Record, Recorder,
+    ReplayError, Settings,
 };
 
 use super::error::LiveError;
@@ -50,7 +51,7 @@ impl Keeper {
             .map_err(|source| LiveError::File { path: folder.to_owned(), source })?;
         let provenance = Provenance {
             campaign_text,
-            source: "live instruments".to_owned(),
+            source: LIVE_SOURCE.to_owned(),
             zero_log_time_ns: u64::try_from(clock.start_unix_ns()).unwrap_or_default(),
         };
         let recorder = Recorder::start(path, &provenance, Settings::LIVE, Box::new(LocalDisk))?;
