@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use devices::emulator::Fault;
-use replay::{Gap, Record, Recorded, RunStop};
+use replay::{Gap, LossKind, Record, Recorded, RunStop};
 
 use super::campaign_folder::rolltank;
 use super::live_tank::{B1_PER_S, Daemon, LiveTank, RELEASED_S};
@@ -90,7 +90,11 @@ fn a_cable_pulled_during_a_decay_ends_the_run_there_and_one_put_back_is_taken_up
 #[test]
 fn samples_that_fail_within_a_run_are_masked_and_counted() {
     let tank = LiveTank::at_speed(8.0);
+    // A day may begin before everything is plugged in.
+    tank.port(0).unplug();
     let mut daemon = Daemon::start(&tank, &[]);
+    daemon.wait_for("does not exist", 1);
+    tank.port(0).replug();
     daemon.wait_for("linked", 2);
     tank.sleep_until_in_round(RELEASED_S + 5.0);
     for fault in [Fault::Skip(5), Fault::Repeat(3), Fault::Noise(20)] {
@@ -111,6 +115,34 @@ fn samples_that_fail_within_a_run_are_masked_and_counted() {
     assert!(run["end_s"].as_f64() > run["start_s"].as_f64().map(|start_s| start_s + 10.0));
     let mean = run["b1_per_s"]["mean"].as_f64().expect("b1");
     assert!((mean - B1_PER_S).abs() < 0.1, "{run}");
+}
+
+#[test]
+fn an_over_driven_instrument_is_masked_and_counted_and_ends_the_run() {
+    let tank = LiveTank::at_speed(8.0);
+    let mut daemon = Daemon::start(&tank, &[]);
+    daemon.wait_for("linked", 2);
+    tank.sleep_until_in_round(RELEASED_S + 8.0);
+    tank.port(0).fault(Fault::Saturate(true));
+    std::thread::sleep(Duration::from_millis(300));
+    tank.port(0).fault(Fault::Saturate(false));
+    daemon.wait_for("latency_s=", 1);
+    let (status, said) = daemon.terminate();
+    assert_eq!(status.code(), Some(0), "{said}");
+    let records = records(&tank);
+    let n_over_range: u64 = records
+        .iter()
+        .map(|record| match record {
+            Record::Loss(loss) if loss.kind == LossKind::OverRange => loss.count,
+            _ => 0,
+        })
+        .sum();
+    assert!(n_over_range > 100, "{n_over_range}");
+    let stops = stops(&records);
+    assert_eq!(stops[0].reason, "the record had a hole", "{stops:?}");
+    let live = tank.text("results/identification.json");
+    let replayed = rolltank(tank.path(), &["identify", ".", "--json"]);
+    assert_eq!(replayed.out, live, "{said}");
 }
 
 #[test]

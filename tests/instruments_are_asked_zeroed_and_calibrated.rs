@@ -38,6 +38,8 @@ fn a_port_that_is_missing_busy_or_another_instruments_is_told_with_its_line_and_
     daemon.wait_for("linked", 2);
     let told = rolltank(tank.path(), &["check", ".", "--seconds", "0.5"]);
     assert!(told.err.contains("is in use by another program\nhint: close"), "{}", told.err);
+    let zero = rolltank(tank.path(), &["zero", ".", "--by", "A. Nilsson", "--seconds", "0.3"]);
+    assert!(zero.err.contains("hint: stop `rolltank run`, or let it"), "{}", zero.err);
     daemon.terminate();
     tank.edit("identify = true }", "identify = true }\nidentity = \"HBM\"");
     let told = rolltank(tank.path(), &["check", ".", "--seconds", "0.5"]);
@@ -57,7 +59,7 @@ fn mistakes_between_devices_are_all_told_at_once_with_their_lines() {
     let told = rolltank(folder.path(), &["check", "."]);
     assert_eq!(told.exit, 2, "{}", told.err);
     for words in [
-        "campaign.toml:21: no profile is called \"arduino-txt\"",
+        "campaign.toml:22: no profile is called \"arduino-txt\"",
         "roll is mapped twice: by device \"potentiometer\" and by device \"copy\"",
         "devices \"potentiometer\" and \"copy\" are both on port",
     ] {

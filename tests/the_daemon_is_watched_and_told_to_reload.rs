@@ -22,7 +22,7 @@ fn address(daemon: &mut Daemon) -> String {
 fn get(address: &str, path: &str, token: Option<&str>) -> String {
     let mut stream = TcpStream::connect(address).expect("the daemon listens");
     let token = token.map_or(String::new(), |token| format!("Authorization: Bearer {token}\r\n"));
-    write!(stream, "GET {path} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n{token}\r\n")
+    write!(stream, "GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n{token}\r\n")
         .expect("it takes a request");
     let mut answer = String::new();
     stream.read_to_string(&mut answer).expect("it answers");
@@ -122,8 +122,8 @@ fn a_zero_is_taken_from_the_daemon_itself_and_in_force_from_the_next_rest_on() {
         let length = body.len();
         write!(
             stream,
-            "POST /zero HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Type: {kind}\r\n\
-             Content-Length: {length}\r\n\r\n{body}"
+            "POST /zero HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\
+             Content-Type: {kind}\r\nContent-Length: {length}\r\n\r\n{body}"
         )
         .expect("it takes a request");
         let mut answer = String::new();

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use ::devices::clock::{Clock, WallClock};
+use ::devices::port::PortFault;
 use ::devices::setup::DeviceConfig;
-use ::devices::{Instrument, InstrumentEvent, Quantity};
+use ::devices::{Instrument, InstrumentError, InstrumentEvent, Quantity};
 use clap::ValueEnum;
 
 use super::Failure;
@@ -72,6 +73,9 @@ pub(super) fn readings(
         }
     }
     match trouble {
+        Some(source @ InstrumentError::Port { fault: PortFault::Busy, .. }) => {
+            Err(Failure::PortInUse { source })
+        }
         Some(source) if raw.iter().any(Vec::is_empty) => Err(failed(source)),
         _ => Ok(raw),
     }

@@ -35,6 +35,12 @@ pub enum Failure {
         /// What is wrong with it.
         source: InstrumentError,
     },
+    /// A port is in use, most likely by the daemon.
+    #[error(transparent)]
+    PortInUse {
+        /// Whose.
+        source: InstrumentError,
+    },
     /// The readings of a channel make no calibration.
     #[error("device \"{device}\": {}: {source}", quantity.name())]
     Calibration {
@@ -189,6 +195,11 @@ impl Failure {
         match self {
             Self::Live { source } => source.hint(),
             Self::Instrument { source } => source.hint(),
+            Self::PortInUse { .. } => Some(
+                "stop `rolltank run`, or let it take the zero itself: \
+                 curl --json '{\"by\": \"NAME\"}' http://127.0.0.1:8440/zero"
+                    .to_owned(),
+            ),
             Self::Replay { source } => source.hint(),
             Self::Import { source } => source.hint(),
             Self::File { .. } => {

@@ -1,11 +1,11 @@
 //! What the daemon tells over HTTP: whether it lives, whether it is ready, its gauges, its status.
 
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use axum::extract::{Request, State};
-use axum::http::{StatusCode, header};
+use axum::http::{HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
@@ -87,8 +87,23 @@ async fn only_with_token(
         Some(token) if !given.is_some_and(|given| is_same(given, token)) => {
             (StatusCode::UNAUTHORIZED, "a token is needed\n").into_response()
         }
+        // A name that leads here by the will of another site is not ours.
+        None if !is_this_machine(request.headers().get(header::HOST)) => {
+            (StatusCode::MISDIRECTED_REQUEST, "ask for this machine by its address\n")
+                .into_response()
+        }
         _ => next.run(request).await,
     }
+}
+
+/// Whether a host is named as only this machine can be.
+fn is_this_machine(host: Option<&HeaderValue>) -> bool {
+    let Some(host) = host.and_then(|host| host.to_str().ok()) else { return false };
+    let without_port = host.rsplit_once(':').map_or(host, |(name, _)| name);
+    let loopback = |text: &str| text.trim_matches(['[', ']']).parse::<IpAddr>();
+    [host, without_port]
+        .into_iter()
+        .any(|name| name == "localhost" || loopback(name).is_ok_and(|ip| ip.is_loopback()))
 }
 
 /// Compares in a time that tells nothing of where two texts differ.
@@ -134,7 +149,16 @@ async fn take_zero(State(served): State<Arc<Served>>, Json(asked): Json<ZeroRequ
 
 #[cfg(test)]
 mod tests {
-    use super::is_same;
+    use super::{HeaderValue, is_same, is_this_machine};
+
+    #[test]
+    fn a_host_is_this_machine_only_by_its_loopback_address() {
+        let is = |host: &'static str| is_this_machine(Some(&HeaderValue::from_static(host)));
+        let ours = ["localhost", "localhost:8440", "127.0.0.1:8440", "127.0.0.1", "[::1]:8440"];
+        assert!(ours.into_iter().all(is));
+        let others = ["evil.example", "evil.example:8440", "127.0.0.1.evil.example", "10.0.0.1:80"];
+        assert!(!others.into_iter().any(is) && !is_this_machine(None));
+    }
 
     #[test]
     fn a_token_is_the_same_only_whole() {

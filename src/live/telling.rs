@@ -62,9 +62,9 @@ impl UnderWay<'_> {
     pub(super) fn reported(&mut self, reported: Reported) {
         let Reported { found, outcome, at_ns } = reported;
         let time_s = self.clock.now_ns() as f64 / 1e9;
+        let decided_ns = self.state.decided_ns.remove(&found.number).unwrap_or(at_ns);
         match outcome {
             Ok(identified) => {
-                let decided_ns = self.state.decided_ns.remove(&found.number).unwrap_or(at_ns);
                 let latency = self.clock.real(at_ns.saturating_sub(decided_ns));
                 let latency_s = latency.as_secs_f64();
                 tracing::info!(run = identified.id, latency_s, "{}", identified.summary);

@@ -259,6 +259,28 @@ mod tests {
     }
 
     #[test]
+    fn a_roll_instrument_that_is_gone_ends_its_run_while_others_go_on() {
+        let mut finder = RunFinder::new(LIMITS);
+        let mut events = Vec::new();
+        let told_s = (0..4000).map(|k| f64::from(k) * 0.02).find(|&time_s| {
+            let free_s = (time_s - 5.0).max(0.0);
+            let value = 0.2 * (-0.2 * free_s).exp() * (6.0 * free_s).cos();
+            let ripple = 2e-4 * (97.0 * time_s).sin();
+            let roll = Sample { quantity: Quantity::Roll, time_s, value: value + ripple };
+            // The cable is pulled at 12 s and put back a minute later.
+            if !(12.0..72.0).contains(&time_s) {
+                finder.push(&roll, &mut events);
+            }
+            let speed = Sample { quantity: Quantity::Speed, time_s, value: 0.01 * ripple };
+            finder.push(&speed, &mut events);
+            !events.is_empty()
+        });
+        assert!(matches!(&events[0], Event::Run(run) if run.end == RunEnd::Gap), "{events:?}");
+        assert!(told_s.is_some_and(|told_s| (16.0..16.1).contains(&told_s)), "{told_s:?}");
+        assert!(finder.is_at_rest());
+    }
+
+    #[test]
     fn a_run_is_told_as_soon_as_its_end_is_known() {
         let mut finder = RunFinder::new(LIMITS);
         let mut events = Vec::new();

@@ -37,6 +37,7 @@ settings = { fields = 1, identify = true }
 [[device.channel]]
 quantity = "roll"
 field = 0
+range = [-0.8, 0.8]
 calibration = { curve = { gain = 1e-5 }, by = "A. Nilsson", at = "2026-11-26" }
 [[device]]
 name = "carriage"
