@@ -56,8 +56,8 @@ fn a_cable_pulled_during_a_decay_ends_the_run_there_and_one_put_back_is_taken_up
     tank.port(1).unplug();
     std::thread::sleep(Duration::from_millis(500));
     let before_s = cpu_s(daemon.id());
-    std::thread::sleep(Duration::from_secs(3));
-    let share = (cpu_s(daemon.id()) - before_s) / 3.0;
+    std::thread::sleep(Duration::from_secs(5));
+    let share = (cpu_s(daemon.id()) - before_s) / 5.0;
     let put_back = Instant::now();
     tank.port(0).replug();
     daemon.wait_for("linked", 3);
@@ -150,8 +150,9 @@ fn a_killed_daemon_leaves_what_it_recorded_and_the_next_keeps_the_runs() {
     let tank = LiveTank::at_speed(8.0);
     let mut daemon = Daemon::start(&tank, &[]);
     daemon.wait_for("latency_s=", 1);
-    let page = tank.files("results", ".html");
-    assert_eq!(page.len(), 2, "a run and the campaign: {page:?}");
+    // The page of the run is there at once, the campaign's follows.
+    assert!(!tank.files("results", ".html").is_empty());
+    daemon.wait_until("campaign's page", || tank.files("results", "index.html").len() == 1);
     tank.sleep_until_in_round(RELEASED_S + 8.0);
     daemon.kill();
     assert_eq!(tank.files("live", ".mcap.part").len(), 1);

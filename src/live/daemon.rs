@@ -54,11 +54,12 @@ pub fn run(
     // What was recovered is a recording of the campaign now.
     campaign.recordings = live_campaign(&options.folder)?.recordings;
     let mut supervisor = Supervisor::new();
+    let mut text = text_of(&options.folder)?;
     let mut earlier = None;
     let mut converting = Converting::default();
     loop {
         let plan = Plan {
-            text: text_of(&options.folder)?,
+            text: text.clone(),
             campaign: campaign.clone(),
             earlier,
             rotate_s: options.rotate_s,
@@ -84,14 +85,18 @@ pub fn run(
                 return Err(LiveError::PortThread);
             }
             Ended::Rotated => campaign.recordings = left.recordings,
-            Ended::Reloaded(new) if particulars(&new) == particulars(&campaign) => {
-                campaign = Campaign { recordings: left.recordings, ..*new };
+            Ended::Reloaded(new) if particulars(&new.campaign) == particulars(&campaign) => {
+                campaign = Campaign { recordings: left.recordings, ..new.campaign };
+                text = new.text;
             }
-            Ended::Reloaded(_) => {
+            Ended::Reloaded(new) => {
                 // Another model or tank: every recording says something else under it.
-                converting.finish()?;
-                campaign = live_campaign(&options.folder)?;
-                earlier = None;
+                // What could not be finished was told, and is no reason to stop recording.
+                converting.finish().ok();
+                let read = live_campaign(&options.folder).map(|read| read.recordings);
+                let recordings = read.unwrap_or(left.recordings);
+                campaign = Campaign { recordings, ..new.campaign };
+                (text, earlier) = (new.text, None);
             }
         }
     }
@@ -100,34 +105,43 @@ pub fn run(
 /// Conversions of finished recordings, on threads of their own.
 #[derive(Default)]
 struct Converting {
-    threads: Vec<JoinHandle<Result<Finished, ReplayError>>>,
+    threads: Vec<Conversion>,
 }
+
+type Conversion = JoinHandle<Result<Finished, ReplayError>>;
 
 impl Converting {
     fn start(&mut self, closed: ClosedRecording) -> Result<(), LiveError> {
+        self.threads.extract_if(.., |thread| thread.is_finished()).for_each(|thread| {
+            // It was told, and the part of what failed is kept.
+            joined(thread).ok();
+        });
         let thread = thread::Builder::new().name("convert".to_owned());
         let system = |source| LiveError::System { what: "thread".to_owned(), source };
         self.threads.push(thread.spawn(move || closed.convert()).map_err(system)?);
         Ok(())
     }
 
-    /// Waits for all of them; the first error is the last word, and every other one is told.
+    /// Waits for all of them; every error is told, and the first one returned.
     fn finish(&mut self) -> Result<(), LiveError> {
-        let mut failed = None;
-        for thread in self.threads.drain(..) {
-            match thread.join() {
-                Ok(Ok(finished)) => {
-                    let path = finished.path.display().to_string();
-                    tracing::info!(path, file_bytes = finished.file_bytes, "recording finished");
-                }
-                Ok(Err(error)) => {
-                    tracing::error!("recording not finished, its part is kept: {error}");
-                    failed.get_or_insert(error);
-                }
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
+        let all: Vec<_> = self.threads.drain(..).map(joined).collect();
+        all.into_iter().collect()
+    }
+}
+
+/// Waits for a conversion and tells what came of it.
+fn joined(thread: Conversion) -> Result<(), LiveError> {
+    match thread.join() {
+        Ok(Ok(finished)) => {
+            let path = finished.path.display().to_string();
+            tracing::info!(path, file_bytes = finished.file_bytes, "recording finished");
+            Ok(())
         }
-        failed.map_or(Ok(()), |error| Err(error.into()))
+        Ok(Err(error)) => {
+            tracing::error!("recording not finished, its part is kept: {error}");
+            Err(error.into())
+        }
+        Err(panic) => std::panic::resume_unwind(panic),
     }
 }
 

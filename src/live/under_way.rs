@@ -1,6 +1,7 @@
 //! A recording under way: the loop that takes every event in turn.
 
 use std::collections::BTreeMap;
+use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::Scope;
@@ -14,12 +15,12 @@ use tokio::sync::mpsc::{Receiver, Sender};
 
 use super::attached::{Attached, Taken};
 use super::attaching::{Detach, forward};
-use super::error::LiveError;
+use super::error::{LiveError, no_devices};
 use super::event::{Event, Order};
 use super::keeping::Keeper;
 use super::status::{RecordedStatus, SharedStatus};
 use super::supervisor::Supervisor;
-use crate::campaign::{self, Campaign};
+use crate::campaign::{self, Campaign, FILE_NAME};
 use crate::pipeline::{Found, LiveRuns};
 
 /// How often time is told to the loop.
@@ -37,11 +38,18 @@ pub(super) enum Ended {
     /// The daemon is to end.
     Terminated,
     /// A new campaign file is in force.
-    Reloaded(Box<Campaign>),
+    Reloaded(Box<Reload>),
     /// The recording was long enough.
     Rotated,
     /// A port's thread has died, which a new start may mend.
     Broken,
+}
+
+/// A campaign file that was read again.
+pub(super) struct Reload {
+    pub(super) campaign: Campaign,
+    /// Its text, as it was when it was read.
+    pub(super) text: String,
 }
 
 /// A recording under way.
@@ -76,7 +84,7 @@ pub(super) struct State {
     pub(super) moved_ns: u64,
     pub(super) roll_ns: u64,
     pub(super) n_events: u64,
-    pub(super) reload: Option<Box<Campaign>>,
+    pub(super) reload: Option<Box<Reload>>,
     pub(super) ended: Option<Ended>,
     pub(super) all_reported: bool,
 }
@@ -228,14 +236,16 @@ impl UnderWay<'_> {
     /// Reads the campaign file again; a wrong one changes nothing.
     fn read_again(&mut self) {
         self.supervisor.reloading();
-        let read = campaign::read(&self.campaign.folder);
-        let none = || vec![super::error::no_devices(&self.campaign.folder)];
+        let folder = &self.campaign.folder;
+        let text = fs::read_to_string(folder.join(FILE_NAME)).unwrap_or_default();
+        let none = || vec![no_devices(folder)];
+        let read = campaign::read(folder);
         let read =
             read.and_then(|read| if read.live.devices.is_empty() { Err(none()) } else { Ok(read) });
         match read {
-            Ok(read) => {
+            Ok(campaign) => {
                 tracing::info!("the new campaign file is in force from the next rest on");
-                self.state.reload = Some(Box::new(read));
+                self.state.reload = Some(Box::new(Reload { campaign, text }));
                 self.status.change(|status| {
                     status.reload_waits = true;
                     status.refused_reload = None;
@@ -264,8 +274,8 @@ impl UnderWay<'_> {
         let rested_s = if roll_is_away { f64::INFINITY } else { since_s(state.moved_ns) };
         let may_end = state.ended.is_none() && self.knows_earlier.load(Ordering::Acquire);
         if may_end && rested_s >= RELOAD_REST_S && state.reload.is_some() {
-            if let Some(campaign) = state.reload.take() {
-                self.end(Ended::Reloaded(campaign));
+            if let Some(reload) = state.reload.take() {
+                self.end(Ended::Reloaded(reload));
             }
         } else if may_end
             && rested_s >= ROTATE_REST_S
