@@ -10,6 +10,7 @@ mod decays_are_identified;
 mod dense_posterior;
 mod draws_belong_together;
 mod driven_runs_are_identified;
+mod every_protocol_is_recorded_and_decoded_anew;
 mod forced_runs_of_any_course;
 mod hidden_effects_are_named;
 mod hidden_tank;

@@ -60,6 +60,7 @@ fn health_readiness_and_gauges_follow_the_instruments() {
     let status = get(&address, "/status", None);
     let body = status.split("\r\n\r\n").nth(1).expect("a body");
     let status: serde_json::Value = serde_json::from_str(body).expect("JSON");
+    assert_eq!(status["schema"], "rolltank.status/1");
     assert_eq!(status["devices"][0]["n_losses"], 1, "{status}");
 }
 

@@ -35,6 +35,8 @@ struct AttachedChannel {
     recent: VecDeque<(f64, f64)>,
 }
 
+/// Gaps so long [s] are each told in the log.
+const LONG_GAP_S: f64 = 0.5;
 /// Raw readings so old [s] are forgotten; a zero is taken from those before.
 const RECENT_S: f64 = 5.0;
 
@@ -188,7 +190,12 @@ impl Attached {
             InstrumentEvent::Gap { from_s, to_s, n_missing } => {
                 let reason = self.lost_because.take();
                 let reason = reason.unwrap_or_else(|| "samples are missing".to_owned());
-                tracing::warn!(device, from_s, to_s, n_missing, "gap: {reason}");
+                self.status.n_gaps += 1;
+                let n_gaps = self.status.n_gaps;
+                // A bad line may lose a sample a second all day.
+                if to_s - from_s >= LONG_GAP_S || n_gaps.is_power_of_two() {
+                    tracing::warn!(device, from_s, to_s, n_missing, n_gaps, "gap: {reason}");
+                }
                 taken.records.extend(self.channels.iter().map(|channel| {
                     Record::Gap(Gap {
                         time_s: now_s,

@@ -10,12 +10,13 @@ use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
+use serde::Serialize;
 use tokio::net::TcpListener;
 
 use super::error::LiveError;
 use super::event::{Order, Orders};
 use super::metrics;
-use super::status::SharedStatus;
+use super::status::{SharedStatus, Status};
 use super::zeroing::{ZeroRequest, zero};
 
 /// Where the daemon listens, and to whom.
@@ -128,8 +129,19 @@ async fn gauges(State(served): State<Arc<Served>>) -> Response {
     }
 }
 
+/// Schema of the status; its number rises when a field changes its meaning.
+const STATUS_SCHEMA: &str = "rolltank.status/1";
+
+#[derive(Serialize)]
+struct WholeStatus {
+    schema: &'static str,
+    #[serde(flatten)]
+    status: Status,
+}
+
 async fn whole_status(State(served): State<Arc<Served>>) -> Response {
-    match serde_json::to_string_pretty(&served.status.now()) {
+    let whole = WholeStatus { schema: STATUS_SCHEMA, status: served.status.now() };
+    match serde_json::to_string_pretty(&whole) {
         Ok(text) => ([(header::CONTENT_TYPE, "application/json")], text).into_response(),
         Err(error) => (StatusCode::INTERNAL_SERVER_ERROR, error.to_string()).into_response(),
     }

@@ -43,6 +43,8 @@ impl Collector for Gauges {
         tell("device_linked", "Whether the port is open", MetricType::Gauge, linked)?;
         let losses = of_device(|device| device.n_losses as f64);
         tell("link_losses", "Links lost", MetricType::Counter, losses)?;
+        let gaps = of_device(|device| device.n_gaps as f64);
+        tell("gaps", "Gaps in the samples", MetricType::Counter, gaps)?;
         let dropped = of_device(|device| device.n_dropped as f64);
         tell("events_dropped", "Events without a place", MetricType::Counter, dropped)?;
         let counts = "Samples by channel and what became of them";

@@ -48,6 +48,8 @@ pub struct DeviceStatus {
     pub trouble: Option<String>,
     /// How often the link was lost.
     pub n_losses: u64,
+    /// Gaps in its samples.
+    pub n_gaps: u64,
     /// Events that found no place in the port's queue.
     pub n_dropped: u64,
     /// Its channels.

@@ -62,19 +62,25 @@ pub(crate) struct LiveTank {
 impl LiveTank {
     /// Plugs every instrument of [`CAMPAIGN`] in, on a clock of that speed.
     pub(crate) fn at_speed(speed: f64) -> Self {
-        Self::with(speed, false)
+        Self::with(CAMPAIGN, speed, false)
     }
 
     /// The same with a model that nobody touches.
     pub(crate) fn calm_at_speed(speed: f64) -> Self {
-        Self::with(speed, true)
+        Self::with(CAMPAIGN, speed, true)
     }
 
-    fn with(speed: f64, is_calm: bool) -> Self {
+    /// The instruments of these `[[device]]` tables, in real time.
+    pub(crate) fn of_devices(devices: &str) -> Self {
+        let rest = CAMPAIGN.split("[[device]]").next().unwrap_or_default();
+        Self::with(&format!("{rest}{devices}"), 1.0, false)
+    }
+
+    fn with(text: &str, speed: f64, is_calm: bool) -> Self {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let ports = folder.path().join("ports");
         fs::create_dir(&ports).expect("it is empty");
-        let text = CAMPAIGN.replace("PORTS", &ports.display().to_string());
+        let text = text.replace("PORTS", &ports.display().to_string());
         fs::write(folder.path().join("campaign.toml"), text).expect("the disk has room");
         let clock = Arc::new(WallClock::start_at_speed(speed));
         let mut tank = Self { folder, ports: Vec::new(), clock, speed, is_calm };
