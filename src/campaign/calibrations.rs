@@ -1,6 +1,6 @@
 //! `calibrations.toml`: zeros and gains that were taken with the instruments, newest last.
 
-use std::fs::{self, OpenOptions};
+use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -110,14 +110,21 @@ pub(super) fn apply(taken: &[TakenCalibration], setups: &mut [DeviceSetup]) {
 /// Appends a calibration; what was taken before stays, as recordings were made under it.
 ///
 /// # Errors
-/// What the system said.
+/// What the system said; then the file is as it was.
 pub fn keep_calibration(folder: &Path, taken: TakenCalibration) -> io::Result<()> {
-    let file = File { calibration: vec![taken] };
-    let text = toml::to_string(&file).map_err(io::Error::other)?;
     let path = folder.join(CALIBRATIONS_FILE);
-    let mut file = OpenOptions::new().append(true).create(true).open(path)?;
-    file.write_all(format!("{text}\n").as_bytes())?;
-    file.sync_all()
+    let before = match fs::read_to_string(&path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
+        read => read?,
+    };
+    let more = File { calibration: vec![taken] };
+    let more = toml::to_string(&more).map_err(io::Error::other)?;
+    // Half a table, as a power cut leaves it, would keep the daemon from starting.
+    let fresh = path.with_extension("toml.new");
+    let mut file = fs::File::create(&fresh)?;
+    file.write_all(format!("{before}{more}\n").as_bytes())?;
+    file.sync_all()?;
+    fs::rename(&fresh, &path)
 }
 
 #[cfg(test)]

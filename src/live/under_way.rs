@@ -281,6 +281,8 @@ impl UnderWay<'_> {
             && rested_s >= ROTATE_REST_S
             && since_s(state.began_ns) >= self.rotate_s
             && !roll_is_away
+            // On a full disk no other could begin.
+            && !self.keeper.progress().stopped
         {
             self.end(Ended::Rotated);
         }
