@@ -28,6 +28,8 @@ pub mod report;
 
 pub mod pipeline;
 
+pub mod live;
+
 pub mod bench;
 
 pub mod command;

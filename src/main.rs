@@ -4,19 +4,19 @@ use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
-use rolltank::command::{self, CommandLine, Exit};
+use rolltank::command::{self, CommandLine, Exit, LogFormat};
 use tracing_subscriber::EnvFilter;
 
 fn main() -> ExitCode {
-    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("warn"));
-    tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(io::stderr)
-        .with_ansi(io::stderr().is_terminal())
-        .without_time()
-        .with_target(false)
-        .init();
     let line = CommandLine::parse();
+    let filter = EnvFilter::try_from_default_env();
+    let filter = filter.unwrap_or_else(|_| EnvFilter::new(line.log_filter()));
+    let logging = tracing_subscriber::fmt().with_env_filter(filter).with_writer(io::stderr);
+    let logging = logging.with_ansi(io::stderr().is_terminal()).with_target(false);
+    match line.log_format() {
+        LogFormat::Json => logging.json().flatten_event(true).init(),
+        LogFormat::Text => logging.without_time().init(),
+    }
     let mut out = io::BufWriter::new(io::stdout().lock());
     let done = command::run(&line, &mut out).and_then(|exit| Ok(out.flush().map(|()| exit)?));
     match done {

@@ -5,10 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The layers of `src`, top first; each may name those below it.
-const LAYERS: [&str; 16] = [
+const LAYERS: [&str; 17] = [
     "main",
     "command",
     "bench",
+    "live",
     "pipeline",
     "report",
     "catalogue",
@@ -25,7 +26,7 @@ const LAYERS: [&str; 16] = [
 ];
 
 /// Crates that only some layers or workspace members may name, each with its owners.
-const OWNERS: [(&str, &[&str]); 20] = [
+const OWNERS: [(&str, &[&str]); 24] = [
     ("clap", &["src/main", "src/command"]),
     ("indicatif", &["src/command"]),
     ("tracing_subscriber", &["src/main"]),
@@ -43,6 +44,7 @@ const OWNERS: [(&str, &[&str]); 20] = [
             "src/campaign",
             "src/tank",
             "src/model",
+            "devices/src/attachment",
             "devices/src/driver",
             "devices/src/emulator",
             "devices/src/profile",
@@ -51,7 +53,11 @@ const OWNERS: [(&str, &[&str]); 20] = [
     ),
     ("csv", &["src/report", "replay/src"]),
     ("mcap", &["replay/src"]),
-    ("tokio", &[]),
+    ("tokio", &["src/live"]),
+    ("axum", &["src/live"]),
+    ("prometheus_client", &["src/live"]),
+    ("sd_notify", &["src/live"]),
+    ("jiff", &["src/live"]),
     ("serialport", &["devices/src/port"]),
     ("thread_priority", &["devices/src/realtime"]),
     ("rustix", &["devices/src/emulator", "replay/src/recorder/disk"]),

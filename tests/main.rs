@@ -1,6 +1,8 @@
 //! Stories.
 #![expect(clippy::print_stdout, reason = "a failing story shows what it saw")]
 
+mod a_decay_at_live_instruments_is_reported;
+mod a_pulled_cable_or_a_killed_daemon_costs_no_more_than_it_must;
 mod architecture;
 mod bad_input;
 mod campaign_folder;
@@ -8,11 +10,14 @@ mod decays_are_identified;
 mod dense_posterior;
 mod draws_belong_together;
 mod driven_runs_are_identified;
+mod every_protocol_is_recorded_and_decoded_anew;
 mod forced_runs_of_any_course;
 mod hidden_effects_are_named;
 mod hidden_tank;
+mod instruments_are_asked_zeroed_and_calibrated;
 mod json_schema;
 mod kvlcc2_is_identified_as_published;
+mod live_tank;
 mod long_campaigns_stay_small;
 mod run_finding_any_stream;
 mod run_finding_decays;
@@ -29,6 +34,7 @@ mod synthetic_results;
 mod synthetic_roll;
 mod the_band_is_sharp;
 mod the_command_line;
+mod the_daemon_is_watched_and_told_to_reload;
 mod the_exact_posterior_is_the_dense_one;
 mod the_hidden_tank_is_sound;
 mod the_json_contract_holds;

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use replay::Columns;
-use rolltank::campaign::{Campaign, Recording, Tank};
+use rolltank::campaign::{Campaign, Live, Recording, Tank};
 use rolltank::hull::{Hull, Water};
 use rolltank::inverse::estimate::Estimate;
 use rolltank::inverse::identification::{
@@ -66,6 +66,7 @@ pub(crate) fn campaign(name: &str) -> Campaign {
         columns: Columns::default(),
         recordings,
         model: None,
+        live: Live::default(),
     }
 }
 

@@ -201,6 +201,30 @@ pub enum InstrumentError {
     },
 }
 
+impl InstrumentError {
+    /// The device that it is about, the later one where there are two.
+    pub fn device(&self) -> Option<&str> {
+        match self {
+            Self::UnknownProfile { .. } | Self::Profile { .. } | Self::UnknownDriver { .. } => None,
+            Self::Settings { device, .. }
+            | Self::Number { device, .. }
+            | Self::NoChannels { device }
+            | Self::NoSuchField { device, .. }
+            | Self::Calibration { device, .. }
+            | Self::NameTwice { device }
+            | Self::Port { device, .. }
+            | Self::Garbage { device, .. }
+            | Self::Silent { device, .. }
+            | Self::WrongDevice { device, .. }
+            | Self::Refused { device, .. }
+            | Self::Unasked { device, .. } => Some(device),
+            Self::PortTwice { second, .. }
+            | Self::AddressTwice { second, .. }
+            | Self::ChannelTwice { second, .. } => Some(second),
+        }
+    }
+}
+
 fn numbered(fields: &[String]) -> String {
     let named = fields.iter().enumerate().map(|(number, name)| format!("{number} ({name})"));
     named.collect::<Vec<_>>().join(", ")

@@ -57,6 +57,12 @@ impl Instrument {
         Some(event)
     }
 
+    /// The port's thread, what its events mean, and the adapter's latency [s]: for who takes events
+    /// on one thread and their meaning on another.
+    pub fn into_parts(self) -> (LinkReader, Interpreter, f64) {
+        (self.reader, self.interpreter, self.latency_s)
+    }
+
     /// Counts of each channel since the start.
     pub fn counts(&self) -> impl Iterator<Item = (Quantity, Counts)> {
         self.interpreter.counts()

@@ -71,6 +71,16 @@ pub enum InstrumentEvent {
     },
 }
 
+impl InstrumentEvent {
+    /// The sample, where it is one whose value says something of its quantity.
+    pub fn usable_sample(&self) -> Option<Sample> {
+        match self {
+            Self::Sample(measured) if measured.quality.is_usable() => Some(measured.sample),
+            _ => None,
+        }
+    }
+}
+
 /// Interprets the events of one device.
 pub struct Interpreter {
     device: String,

@@ -7,6 +7,7 @@
 //! port (thread, bytes, time stamps) -> driver (frames) -> instrument (SI, host time, quality)
 //! ```
 
+mod attachment;
 pub mod channel;
 pub mod clock;
 mod device;
@@ -26,6 +27,7 @@ pub mod setup;
 mod stamp;
 mod trouble;
 
+pub use attachment::{Attachment, AttachmentError};
 pub use device::{Device, DeviceError, Reading};
 pub use error::InstrumentError;
 pub use instrument::Instrument;

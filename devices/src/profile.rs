@@ -1,6 +1,6 @@
 //! Instruments known by name: `profiles/*.toml`, each with its manual.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::channel::Lag;
 use crate::driver::Pace;
@@ -49,7 +49,7 @@ pub struct Profile {
 }
 
 /// When an instrument is asked, and how late its readings come.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PaceSettings {
     /// Cycles in a second; as many as answers come when left out.

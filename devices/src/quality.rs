@@ -43,6 +43,13 @@ impl Quality {
         self.0 & other.0 == other.0
     }
 
+    /// Whether the value says something of the quantity: not beyond its range, not of a broken
+    /// sensor, not of a calibration signal.
+    pub fn is_usable(self) -> bool {
+        let none = [Self::OVER_RANGE, Self::SENSOR_FAULT, Self::CALIBRATING];
+        !none.into_iter().any(|flag| self.has(flag))
+    }
+
     /// The flags as bits, for recordings.
     pub fn bits(self) -> u8 {
         self.0

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::Quantity;
 use crate::channel::{Channel, Lag};
@@ -45,8 +45,8 @@ pub struct DeviceSetup {
     pub channels: Vec<Channel>,
 }
 
-/// A device with everything decided.
-#[derive(Debug, Clone, PartialEq)]
+/// A device with everything decided; its text form is what a recording keeps of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DeviceConfig {
     /// Its name.
     pub name: String,

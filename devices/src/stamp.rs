@@ -7,6 +7,8 @@ use crate::driver::{DeviceTicks, Taken};
 const DRIFT_MAX: f64 = 0.01;
 /// Arrivals may be late by this much [s] before the instrument is taken to have restarted.
 const LATE_MAX_S: f64 = 2.0;
+/// The same where a sequence number that counted on says that it did not restart.
+const LATE_COUNTED_MAX_S: f64 = 60.0;
 /// Device time between two looks at the estimator [s].
 const LINE_EVERY_S: f64 = 0.1;
 
@@ -144,7 +146,9 @@ impl Stamper {
         }
         let per_s = self.settings.ticks.ticks_per_s;
         let elapsed_s = arrival_s - self.last_arrival_s.unwrap_or(arrival_s);
-        let tolerance_s = LATE_MAX_S + DRIFT_MAX * elapsed_s;
+        let counted = stamp.sequence.is_some() && !stamp.restarted;
+        let late_max_s = if counted { LATE_COUNTED_MAX_S } else { LATE_MAX_S };
+        let tolerance_s = late_max_s + DRIFT_MAX * elapsed_s;
         let counter = self.ticks.as_mut()?;
         let value = ticks?;
         match counter.ticks(value, elapsed_s * per_s, tolerance_s * per_s) {
@@ -188,6 +192,23 @@ mod tests {
         assert!((stamp.time_s - 0.995).abs() < 1e-9 && (stamp.bound_s - 0.007).abs() < 1e-9);
         let held = stamper.stamp(None, None, Taken::Held(2_000_000_000, 2_001_000_000));
         assert!((held.time_s - 1.9985).abs() < 1e-9 && (held.bound_s - 0.0005).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_stall_of_seconds_is_no_restart_of_a_board_that_counted_on() {
+        let ticks = DeviceTicks { sequence_bits: Some(32), time_bits: Some(32), ticks_per_s: 1e6 };
+        let mut stamper = stamper(ticks);
+        for index in 0..2000_u64 {
+            // What was sent in ten to fifteen seconds comes all at once.
+            let sent_ns = 5_000_000_000 + index * 10_000_000;
+            let stalled = (15_000_000_000..20_000_000_000).contains(&sent_ns);
+            let arrived_ns = if stalled { 20_000_000_000 } else { sent_ns };
+            let arrived = Taken::Arrived(arrived_ns);
+            let stamp = stamper.stamp(Some(index), Some(index * 10_000), arrived);
+            let truth_s = sent_ns as f64 / 1e9 - 0.002;
+            assert!((stamp.time_s - truth_s).abs() < 1e-6, "{index}: {stamp:?}");
+            assert!(!stamp.restarted && stamp.n_missing == 0);
+        }
     }
 
     #[test]

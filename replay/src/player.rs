@@ -21,6 +21,7 @@ const BATCH_SAMPLES: usize = 1024;
 pub struct Player {
     name: String,
     heads: Vec<Head>,
+    /// Channels whose gaps show in their intervals alone.
     gaps: Vec<Gaps>,
     /// What is known before anything is read.
     endings: Vec<Note>,

@@ -34,20 +34,20 @@ pub enum Record {
     Loss(Loss),
 }
 
-/// Bytes that passed a port in one reading or one command.
+/// What happened on a link: bytes in one reading or one command, or the link itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Raw {
     /// Name of the device.
     pub device: Arc<str>,
     /// When the bytes were there, stamped before they were decoded [s].
     pub time_s: f64,
-    /// Which way they went.
+    /// Which way they went, or what else happened.
     pub direction: Direction,
-    /// The bytes.
+    /// The bytes; for a loss what was seen, in words.
     pub bytes: Vec<u8>,
 }
 
-/// Which way bytes went through a port.
+/// Which way bytes went through a port, or what else happened on its link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Direction {
@@ -55,6 +55,14 @@ pub enum Direction {
     Received,
     /// To the instrument.
     Sent,
+    /// Nowhere: the link was opened.
+    Opened,
+    /// Nowhere: waiting for an answer was given up.
+    Waited,
+    /// Nowhere: the link was lost.
+    Lost,
+    /// They were dropped, as nobody took them; the bytes tell how many events.
+    Dropped,
 }
 
 /// An instrument with all that its driver needs to decode its bytes again.

@@ -21,6 +21,8 @@ pub struct Recorded {
     metadata: BTreeMap<String, String>,
     channels: BTreeMap<u16, Kind>,
     messages: u64,
+    /// Whether samples are passed over undecoded.
+    skips_samples: bool,
 }
 
 enum Kind {
@@ -42,6 +44,7 @@ impl Recorded {
             metadata: BTreeMap::new(),
             channels: BTreeMap::new(),
             messages: 0,
+            skips_samples: false,
         };
         // Our metadata stands before the first message.
         let mut ahead = Records::open(path)?;
@@ -65,6 +68,21 @@ impl Recorded {
         &self.metadata
     }
 
+    /// The same without its samples, for who decodes them anew from the raw bytes.
+    pub(crate) fn without_samples(self) -> Self {
+        Self { skips_samples: true, ..self }
+    }
+
+    /// Bytes read so far and bytes of the file.
+    pub(crate) fn progress(&self) -> (u64, u64) {
+        (self.records.bytes_read(), self.records.bytes_total())
+    }
+
+    /// Byte at which the file was torn, when it was and reading came that far.
+    pub(crate) fn torn_at(&self) -> Option<u64> {
+        self.records.torn_at()
+    }
+
     /// The next record; none at the end of the file or its tear.
     ///
     /// # Errors
@@ -85,6 +103,7 @@ impl Recorded {
                 Ok(McapRecord::Message { header, data }) => {
                     self.messages += 1;
                     let decoded = match self.channels.get(&header.channel_id) {
+                        Some(Kind::Sample(_)) if self.skips_samples => continue,
                         Some(Kind::Sample(topic)) => sample(topic, &data),
                         Some(Kind::Document(document)) => {
                             document.decode(&data).map_err(|error| error.to_string())

@@ -11,6 +11,7 @@ use crate::csv_file::open;
 use crate::csv_stream::{CsvStream, TimeBase};
 use crate::ending;
 use crate::error::ReplayError;
+use crate::live_stream::{LiveStream, is_live};
 use crate::mcap_inventory::Inventory;
 use crate::mcap_stream::{McapStream, MessageTime, Place};
 use crate::message::READABLE;
@@ -79,6 +80,11 @@ impl Sources {
         only: Option<Quantity>,
         inventory: &Inventory,
     ) -> Result<(), ReplayError> {
+        if only.is_none() && is_live(&inventory.metadata) {
+            // Its drivers know of every gap, so that no interval need be judged.
+            self.streams.push(Box::new(LiveStream::open(path)?));
+            return Ok(());
+        }
         for topic in &TOPICS {
             let there = inventory.encodings.contains_key(topic.name);
             if only == Some(topic.quantity) && !there {

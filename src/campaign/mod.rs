@@ -1,6 +1,8 @@
 //! The campaign: one day's model, tank and recordings, as written in `campaign.toml`.
 
+mod calibrations;
 mod columns;
+mod live;
 mod mistake;
 mod particulars;
 mod read;
@@ -12,12 +14,15 @@ mod units;
 use std::path::{Path, PathBuf};
 
 use devices::Quantity;
+use devices::setup::{DeviceConfig, DeviceSetup};
 use replay::Columns;
 
 use crate::hull::{Hull, Water};
 use crate::model::model_file::ModelFile;
 use crate::roll::exciting_moment::Exciter;
 
+pub use calibrations::{CALIBRATIONS_FILE, TakenCalibration, ZeroTaken, keep_calibration};
+pub use live::LIVE_FOLDER;
 pub use mistake::Mistake;
 pub use read::{FILE_NAME, read};
 
@@ -42,6 +47,8 @@ pub struct Campaign {
     pub recordings: Vec<Recording>,
     /// The simulation model that a diagnosis extended, where one was written.
     pub model: Option<ModelFile>,
+    /// The instruments of the tank, where there are such.
+    pub live: Live,
 }
 
 impl Campaign {
@@ -49,6 +56,21 @@ impl Campaign {
     pub fn model_path(folder: &Path) -> PathBuf {
         folder.join("results").join("model.toml")
     }
+}
+
+/// The instruments of the tank, and what they are recorded under from here on.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Live {
+    /// Loading or appendage condition.
+    pub condition: String,
+    /// Carriage speed [m/s] where none is measured.
+    pub speed_m_s: Option<f64>,
+    /// The devices as written, with the newest calibrations.
+    pub setups: Vec<DeviceSetup>,
+    /// The lines on which they begin.
+    pub lines: Vec<Option<usize>>,
+    /// The devices with everything decided.
+    pub devices: Vec<DeviceConfig>,
 }
 
 /// Limits of the tank that runs are checked against.

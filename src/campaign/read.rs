@@ -8,7 +8,7 @@ use replay::Columns;
 
 use super::mistake::Mistake;
 use super::tree::{Section, Source};
-use super::{Campaign, Recording, columns, particulars, recordings};
+use super::{Campaign, LIVE_FOLDER, Recording, columns, live, particulars, recordings};
 use crate::model::model_file::ModelFile;
 
 /// Name of the campaign file in its folder.
@@ -40,15 +40,28 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
         root.section("exciter").and_then(|section| particulars::exciter(&section, hull.as_ref()));
     let columns = root.section("columns").map(|section| columns::read(&section));
     let known = columns.clone().unwrap_or_default();
+    let live = live::read(root, folder);
+    let is_live = !live.setups.is_empty();
     let recordings = if root.holds("recording") {
         let named = |quantity: Quantity| root.holds_below("columns", quantity.name());
-        recordings::read(root.sections("recording"), folder, &named)
+        let mut listed = recordings::read(root.sections("recording"), folder, &named);
+        // What the instruments recorded meanwhile belongs to the day without being listed.
+        let own = if is_live { found(source, folder, &folder.join(LIVE_FOLDER)) } else { vec![] };
+        listed.extend(recordings::not_in(&listed, own));
+        listed
     } else {
         root.leave("recording");
-        found(source, folder)
+        let mut all = found(source, folder, folder);
+        // The daemon adds to these, and their runs are numbered behind those of all others.
+        all.sort_by_key(recordings::is_live);
+        all
     };
-    // Live instruments and the plan of the day take no part in reading recordings.
-    root.leave("device");
+    if recordings.is_empty() && !is_live && !root.holds("recording") {
+        let hint = "put the recordings (*.mcap, *.csv) beside campaign.toml, or describe the \
+            instruments in [[device]]";
+        source.add(None, "the folder holds no recording".to_owned(), Some(hint.to_owned()));
+    }
+    // The plan of the day takes no part in reading recordings.
     root.leave("plan");
     root.close();
     check_columns(root, columns.as_ref(), &recordings);
@@ -64,6 +77,7 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
         columns: known,
         recordings,
         model,
+        live,
     })
 }
 
@@ -87,13 +101,12 @@ fn model(source: &Source<'_>, folder: &Path) -> Option<ModelFile> {
         .ok()
 }
 
-fn found(source: &Source<'_>, folder: &Path) -> Vec<Recording> {
-    match replay::list_recordings(folder) {
-        Ok(paths) if paths.is_empty() => {
-            let hint = "put the recordings (*.mcap, *.csv) beside campaign.toml";
-            source.add(None, "the folder holds no recording".to_owned(), Some(hint.to_owned()));
-            Vec::new()
-        }
+/// Every recording in `below`, a folder of the campaign or its own; none when it is not there.
+fn found(source: &Source<'_>, folder: &Path, below: &Path) -> Vec<Recording> {
+    if !below.exists() {
+        return Vec::new();
+    }
+    match replay::list_recordings(below) {
         Ok(paths) => {
             for (table, copy) in recordings::copies(&paths) {
                 source.add(

@@ -6,11 +6,9 @@ use std::path::{Component, Path, PathBuf};
 use devices::Quantity;
 
 use super::Recording;
+use super::live::{DEFAULT_CONDITION, LIVE_FOLDER, described};
 use super::mistake::nearest;
 use super::tree::{NOT_NEGATIVE, Section};
-
-/// Condition of a recording that names none.
-const DEFAULT_CONDITION: &str = "default";
 
 /// Reads every `[[recording]]` table; `named` tells the channels that `[columns]` names.
 pub(super) fn read(
@@ -73,6 +71,24 @@ pub(super) fn found(folder: &Path, paths: Vec<PathBuf>) -> Vec<Recording> {
             speed_m_s: None,
             line: None,
         })
+        .map(|found| if is_live(&found) { described(found) } else { found })
+        .collect()
+}
+
+/// Whether a recording lies where the campaign's own instruments leave theirs.
+pub(super) fn is_live(recording: &Recording) -> bool {
+    recording.name.starts_with(&format!("{LIVE_FOLDER}/"))
+}
+
+/// Those of `found` that are not listed.
+pub(super) fn not_in(listed: &[Recording], found: Vec<Recording>) -> Vec<Recording> {
+    let files = |recording: &Recording| -> Vec<PathBuf> {
+        recording.files.iter().map(|(_, path)| resolved(path)).collect()
+    };
+    let known: BTreeSet<PathBuf> = listed.iter().flat_map(files).collect();
+    found
+        .into_iter()
+        .filter(|found| files(found).iter().all(|path| !known.contains(path)))
         .collect()
 }
 

@@ -1,9 +1,11 @@
 //! A walk over a TOML file that remembers the line of every value and collects every mistake.
 
 use std::cell::RefCell;
+use std::ops::Range;
 
+use serde::de::DeserializeOwned;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 use super::mistake::{Mistake, nearest};
 
@@ -91,6 +93,8 @@ pub(super) struct Section<'s> {
     source: &'s Source<'s>,
     title: String,
     line: Option<usize>,
+    /// Where it stands in the text [bytes].
+    span: Range<usize>,
     table: &'s DeTable<'s>,
     asked: RefCell<Vec<&'static str>>,
     missing: RefCell<Vec<(&'static str, String)>>,
@@ -104,7 +108,7 @@ impl<'s> Section<'s> {
         table: &'s DeTable<'s>,
     ) -> Self {
         let (asked, missing) = (RefCell::default(), RefCell::default());
-        Self { source, title, line, table, asked, missing }
+        Self { source, title, line, span: 0..0, table, asked, missing }
     }
 
     /// The line of a key, or of the table when it does not hold the key.
@@ -218,6 +222,30 @@ impl<'s> Section<'s> {
         }
     }
 
+    /// The whole table as a value that knows its own keys; a mistake in it is added.
+    pub(super) fn whole<T: DeserializeOwned>(&self) -> Option<T> {
+        let whole = Spanned::new(self.span.clone(), DeValue::Table(self.table.clone()));
+        match T::deserialize(ValueDeserializer::from(whole)) {
+            Ok(value) => Some(value),
+            Err(error) => {
+                let line = error.span().map(|span| self.source.line(span.start));
+                let message = format!("{}: {}", self.title, error.message().trim());
+                self.mistake_on(line.or(self.line), message, None);
+                None
+            }
+        }
+    }
+
+    /// Adds a mistake on a line.
+    pub(super) fn mistake_on(&self, line: Option<usize>, message: String, hint: Option<String>) {
+        self.source.add(line, message, hint);
+    }
+
+    /// Adds a mistake of another file.
+    pub(super) fn add(&self, mistake: Mistake) {
+        self.source.mistakes.borrow_mut().push(mistake);
+    }
+
     /// Every table of an array of tables, none when the key is absent.
     pub(super) fn sections(&self, key: &'static str) -> Vec<Section<'s>> {
         let items = match self.value(key) {
@@ -236,6 +264,7 @@ impl<'s> Section<'s> {
             };
             let mut section = self.below(key, format!("[[{key}]]"), table);
             section.line = Some(self.source.line(item.span().start));
+            section.span = item.span();
             sections.push(section);
         }
         sections

@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use super::{Exit, Failure};
 use crate::bench::ranks::Ranks;
 use crate::bench::speed::{self, Figure};
-use crate::bench::{Calibration, calibrate, diagnosis, machine};
+use crate::bench::{Calibration, calibrate, diagnosis, live, machine};
 
 /// Measure speed and memory on this machine, and how often the bands hold the truth
 #[derive(Debug, Args)]
@@ -33,11 +33,13 @@ pub(super) struct Arguments {
 enum Subject {
     /// Time and memory
     Speed,
+    /// From the end of a run to its report, at a virtual tank
+    Live,
     /// Coverage and rank histograms over drawn runs
     Calibration,
     /// Time of a diagnosis of twelve passes, and of one run
     Diagnosis,
-    /// Speed and calibration
+    /// Everything
     All,
 }
 
@@ -50,7 +52,11 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
         }
         return Ok(Exit::Done);
     }
-    if arguments.subject != Subject::Calibration {
+    if matches!(arguments.subject, Subject::Live | Subject::All) {
+        told(out, latency()?)?;
+        writeln!(out)?;
+    }
+    if matches!(arguments.subject, Subject::Speed | Subject::All) {
         told(out, speed::one_decay())?;
         told(out, speed::long_decays())?;
         told(out, speed::against_the_chain())?;
@@ -61,11 +67,22 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
         }
         writeln!(out)?;
     }
-    if arguments.subject != Subject::Speed {
+    if matches!(arguments.subject, Subject::Calibration | Subject::All) {
         let n_campaigns = (arguments.runs / 5) as usize;
         write!(out, "{}", table(&calibrate(n_campaigns, arguments.seed)))?;
     }
     Ok(Exit::Done)
+}
+
+/// Measured in a folder of its own, which is removed.
+fn latency() -> Result<Vec<Figure>, Failure> {
+    let folder = std::env::temp_dir().join(format!("rolltank-bench-{}", std::process::id()));
+    super::fresh_folder::require_fresh(&folder)?;
+    let failed = |source| Failure::File { path: folder.clone(), source };
+    std::fs::create_dir_all(&folder).map_err(failed)?;
+    let measured = live::report_latency(&folder);
+    std::fs::remove_dir_all(&folder).map_err(failed)?;
+    Ok(measured?)
 }
 
 fn told(out: &mut dyn Write, figures: Vec<Figure>) -> io::Result<()> {

@@ -3,10 +3,13 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use ::devices::InstrumentError;
+use ::devices::probe::ProbeReport;
 use ::replay::{Note, Severity};
 use clap::Args;
 use serde_json::{Value, json};
 
+use super::devices;
 use super::failure::told;
 use super::terminal::Terminal;
 use super::{Exit, Failure};
@@ -24,13 +27,20 @@ pub(super) struct Arguments {
     /// Print JSON instead of text
     #[arg(long)]
     json: bool,
+    /// Listen to each instrument for so long
+    #[arg(long, value_name = "SECONDS", default_value_t = 2.0, value_parser = super::positive)]
+    seconds: f64,
 }
 
 pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
+    let (mut live, mut asked) = (Vec::new(), Vec::new());
     let (mistakes, unreadable, recordings) = match campaign::read(&arguments.campaign) {
         Err(mistakes) => (mistakes, Vec::new(), Vec::new()),
         Ok(campaign) => {
-            let (unreadable, recordings) = survey(&campaign);
+            let (mut unreadable, recordings) = survey(&campaign);
+            asked = devices::ask_all(&campaign.live.devices, arguments.seconds);
+            unreadable.extend(troubles(&campaign, &asked));
+            live.clone_from(&campaign.live.devices);
             (campaign.unreachable_speeds(), unreadable, recordings)
         }
     };
@@ -46,13 +56,26 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     if arguments.json {
         let recordings: Vec<Value> = recordings.iter().map(surveyed_json).collect();
         let ok = mistakes.is_empty();
-        let report =
-            json!({"schema": SCHEMA, "ok": ok, "mistakes": mistakes, "recordings": recordings});
+        let reports = live.iter().zip(&asked);
+        let devices: Vec<Value> = reports
+            .filter_map(|(device, report)| {
+                Some(devices::report_json(device, report.as_ref().ok()?))
+            })
+            .collect();
+        let report = json!({
+            "schema": SCHEMA, "ok": ok, "mistakes": mistakes, "recordings": recordings,
+            "devices": devices,
+        });
         writeln!(out, "{report:#}")?;
         return Ok(exit);
     }
     for surveyed in &recordings {
         tell(out, surveyed)?;
+    }
+    for (device, report) in live.iter().zip(&asked) {
+        if let Ok(report) = report {
+            devices::tell(out, device, report)?;
+        }
     }
     match exit {
         Exit::Usage => return Err(Failure::Campaign { mistakes }),
@@ -61,6 +84,22 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     }
     writeln!(out, "no mistake found")?;
     Ok(exit)
+}
+
+/// What is wrong with the instruments, each at the line of its device.
+fn troubles(campaign: &Campaign, asked: &[Result<ProbeReport, InstrumentError>]) -> Vec<Mistake> {
+    let found = asked.iter().flat_map(|asked| match asked {
+        Ok(report) => report.troubles.clone(),
+        Err(error) => vec![error.clone()],
+    });
+    let file = campaign.folder.join(FILE_NAME).display().to_string();
+    let mistake = |error: InstrumentError| Mistake {
+        file: file.clone(),
+        line: campaign.live.line_of(&error),
+        message: error.to_string(),
+        hint: error.hint(),
+    };
+    found.map(mistake).collect()
 }
 
 fn has_lost_data(surveyed: &Surveyed) -> bool {

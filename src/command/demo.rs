@@ -1,4 +1,4 @@
-//! `rolltank demo`: the paper's campaign, simulated, replayed and reported without any hardware.
+//! `rolltank demo`: a day in the virtual tank, from serial ports to the report, without hardware.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -6,34 +6,50 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::fresh_folder::{next_free, require_fresh};
-use super::method::Identifying;
-use super::simulate::simulated;
-use super::{Exit, Failure, replaying, tables};
+use super::terminal::Terminal;
+use super::{Exit, Failure, tables};
 use crate::campaign;
+use crate::live::{self, DayProgress};
 use crate::pipeline;
 use crate::tank::Scenario;
 
-/// Simulate the paper's campaign in a new folder, replay it and print its damping
+/// Run a day of the paper's tests through emulated instruments on real ports, and report it
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Folder for the campaign: new or empty [default: rolltank-demo, or the next free number]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    #[command(flatten)]
-    identifying: Identifying,
+    /// Seconds of the tank that pass in one second
+    #[arg(long, value_name = "X", default_value_t = 20.0, value_parser = super::positive)]
+    speed: f64,
+    /// Seed of everything random
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
 }
 
 pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
     let folder = arguments.output.clone().unwrap_or_else(|| next_free("rolltank-demo"));
     require_fresh(&folder)?;
-    let scenario = Scenario::builtin("paper").expect("the paper's campaign is built in");
-    simulated(&scenario, arguments.identifying.seed(), &folder)?;
-    writeln!(out, "campaign: {} (simulated)", folder.display())?;
+    let scenario = Scenario::builtin("short-day").expect("the short day is built in");
+    writeln!(out, "campaign: {} (virtual tank)", folder.display())?;
     out.flush()?;
+    let terminal = Terminal::new();
+    let ended = live::virtual_day(
+        &scenario,
+        arguments.seed,
+        &folder,
+        arguments.speed,
+        &mut |DayProgress { played_s, total_s, status }| {
+            let (condition, n_runs) = (&status.condition, status.runs.n_identified);
+            let message = format!("{condition}, {n_runs} runs");
+            terminal.show(played_s as u64, total_s as u64, message);
+        },
+    )?;
+    drop(terminal);
+    let results = ended.results.unwrap_or_default();
+    tables::human(out, &results)?;
     let campaign = campaign::read(&folder)?;
-    let dir = pipeline::results_folder(&campaign);
-    let replayed = replaying::replay(&campaign, arguments.identifying, None, Some(&dir))?;
-    tables::human(out, &replayed.results)?;
-    writeln!(out, "\nreport: {}", dir.join(pipeline::REPORT_PAGE).display())?;
-    Ok(replayed.exit)
+    let page = pipeline::results_folder(&campaign).join(pipeline::REPORT_PAGE);
+    writeln!(out, "\nreport: {}", page.display())?;
+    Ok(if results.runs.is_empty() { Exit::Incomplete } else { Exit::Done })
 }

@@ -27,16 +27,16 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
     let campaign = campaign::read(&arguments.campaign)?;
-    let mut observed = Observed::new(&campaign);
+    let mut observed = Observed::default();
     let options = Options { keep_histories: false, ..Options::default() };
     pipeline::replay(&campaign, &options, &mut |_| {}, &mut |run, _| {
-        observed.hear(run);
+        observed.hear(run, &campaign);
         Ok(())
     })?;
     for reason in observed.left_out() {
         tracing::warn!("left out of the diagnosis: {reason}");
     }
-    let diagnosis = observed.diagnosed();
+    let diagnosis = observed.diagnosed(&campaign);
     if let Some(diagnosis) = diagnosis.as_ref().filter(|_| arguments.write_model) {
         write_model(&campaign, &diagnosis.model)?;
     }

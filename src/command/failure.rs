@@ -7,8 +7,11 @@ use std::path::PathBuf;
 
 use super::Exit;
 use crate::campaign::Mistake;
+use crate::live::LiveError;
 use crate::pipeline::{PipelineError, WriteError};
 use crate::tank::{ScenarioError, TankError};
+use ::devices::channel::CalibrationError;
+use ::devices::{InstrumentError, Quantity};
 use ::replay::ReplayError;
 
 /// A command that could not do its work.
@@ -19,6 +22,40 @@ pub enum Failure {
     Campaign {
         /// Every mistake in it.
         mistakes: Vec<Mistake>,
+    },
+    /// The daemon cannot do its work.
+    #[error(transparent)]
+    Live {
+        /// Why not.
+        source: LiveError,
+    },
+    /// An instrument does not do what it should.
+    #[error(transparent)]
+    Instrument {
+        /// What is wrong with it.
+        source: InstrumentError,
+    },
+    /// A port is in use, most likely by the daemon.
+    #[error(transparent)]
+    PortInUse {
+        /// Whose.
+        source: InstrumentError,
+    },
+    /// The readings of a channel make no calibration.
+    #[error("device \"{device}\": {}: {source}", quantity.name())]
+    Calibration {
+        /// The device.
+        device: String,
+        /// The channel.
+        quantity: Quantity,
+        /// Why not.
+        source: CalibrationError,
+    },
+    /// No instrument measures a channel that is to be calibrated.
+    #[error("no [[device]] measures the {}", quantity.name())]
+    NotMeasured {
+        /// The channel.
+        quantity: Quantity,
     },
     /// The scenario is wrong.
     #[error(transparent)]
@@ -109,6 +146,15 @@ impl From<Vec<Mistake>> for Failure {
     }
 }
 
+impl From<LiveError> for Failure {
+    fn from(source: LiveError) -> Self {
+        match source {
+            LiveError::Campaign { mistakes } => Self::Campaign { mistakes },
+            source => Self::Live { source },
+        }
+    }
+}
+
 impl Failure {
     /// How the command ends.
     pub fn exit(&self) -> Exit {
@@ -117,7 +163,9 @@ impl Failure {
             | Self::Scenario { .. }
             | Self::ScenarioFile { .. }
             | Self::NotFresh { .. }
-            | Self::InsideCampaign { .. } => Exit::Usage,
+            | Self::InsideCampaign { .. }
+            | Self::NotMeasured { .. }
+            | Self::Live { source: LiveError::NoDevices { .. } } => Exit::Usage,
             _ => Exit::Failed,
         }
     }
@@ -145,6 +193,13 @@ impl Failure {
 
     fn hint(&self) -> Option<String> {
         match self {
+            Self::Live { source } => source.hint(),
+            Self::Instrument { source } => source.hint(),
+            Self::PortInUse { .. } => Some(
+                "stop `rolltank run`, or let it take the zero itself: \
+                 curl --json '{\"by\": \"NAME\"}' http://127.0.0.1:8440/zero"
+                    .to_owned(),
+            ),
             Self::Replay { source } => source.hint(),
             Self::Import { source } => source.hint(),
             Self::File { .. } => {

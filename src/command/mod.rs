@@ -1,8 +1,11 @@
 //! The commands of `rolltank`, one file each.
 
 mod bench;
+mod calibrate;
+mod calibrating;
 mod check;
 mod demo;
+mod devices;
 mod diagnose;
 mod exit;
 mod failure;
@@ -14,9 +17,11 @@ mod reference;
 mod replay;
 mod replaying;
 mod report;
+mod run;
 mod simulate;
 mod tables;
 mod terminal;
+mod zero;
 
 use std::io::Write;
 
@@ -24,6 +29,7 @@ use clap::{Parser, Subcommand};
 
 pub use exit::Exit;
 pub use failure::Failure;
+pub use run::LogFormat;
 
 /// Roll damping from recorded roll tests, run by run and against Froude number.
 #[derive(Debug, Parser)]
@@ -40,6 +46,10 @@ pub struct CommandLine {
 enum Command {
     Demo(demo::Arguments),
     Check(check::Arguments),
+    Run(run::Arguments),
+    Devices(devices::Arguments),
+    Zero(zero::Arguments),
+    Calibrate(calibrate::Arguments),
     Replay(replay::Arguments),
     Identify(identify::Arguments),
     Diagnose(diagnose::Arguments),
@@ -50,6 +60,32 @@ enum Command {
     Bench(bench::Arguments),
 }
 
+impl CommandLine {
+    /// What is logged when nothing else is asked for: a daemon tells what it does.
+    pub fn log_filter(&self) -> &'static str {
+        match self.command {
+            Command::Run(_) => "info",
+            // At twenty times its pace a hiccup of the computer looks like a silent instrument.
+            Command::Demo(_) => "error,rolltank::live::attached=off",
+            _ => "warn",
+        }
+    }
+
+    /// How log lines are to be written.
+    pub fn log_format(&self) -> LogFormat {
+        match &self.command {
+            Command::Run(arguments) => arguments.log_format,
+            _ => LogFormat::Text,
+        }
+    }
+}
+
+/// A number above zero from the command line.
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| "expected a number above 0, such as 1 or 60".to_owned())
+}
+
 /// Does what the command line asks for; results go to `out`, progress to standard error.
 ///
 /// # Errors
@@ -58,6 +94,10 @@ pub fn run(line: &CommandLine, out: &mut dyn Write) -> Result<Exit, Failure> {
     match &line.command {
         Command::Demo(arguments) => demo::run(arguments, out),
         Command::Check(arguments) => check::run(arguments, out),
+        Command::Run(arguments) => run::run(arguments, out),
+        Command::Devices(arguments) => devices::run(arguments, out),
+        Command::Zero(arguments) => zero::run(arguments, out),
+        Command::Calibrate(arguments) => calibrate::run(arguments, out),
         Command::Replay(arguments) => replay::run(arguments, out),
         Command::Identify(arguments) => identify::run(arguments, out),
         Command::Diagnose(arguments) => diagnose::run(arguments, out),

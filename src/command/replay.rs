@@ -16,7 +16,7 @@ pub(super) struct Arguments {
     /// Folder that holds campaign.toml
     campaign: PathBuf,
     /// Recorded seconds to play in one second; as fast as it goes when left out
-    #[arg(long, value_name = "X", value_parser = positive)]
+    #[arg(long, value_name = "X", value_parser = super::positive)]
     speed: Option<f64>,
     #[command(flatten)]
     identifying: Identifying,
@@ -37,9 +37,4 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
         writeln!(out, "\nreport: {}", dir.join(pipeline::REPORT_PAGE).display())?;
     }
     Ok(replayed.exit)
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().ok().filter(|number| number.is_finite() && *number > 0.0);
-    number.ok_or_else(|| "expected a number above 0, such as 1 or 60".to_owned())
 }

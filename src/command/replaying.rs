@@ -35,7 +35,7 @@ pub(super) fn replay(
     };
     let terminal = Terminal::new();
     let mut n_lost = 0;
-    let mut observed = Observed::new(campaign);
+    let mut observed = Observed::default();
     let results = pipeline::replay(
         campaign,
         &options,
@@ -51,7 +51,7 @@ pub(super) fn replay(
         &mut |run, overview| {
             terminal.line(&format!("{}  Fr {:.3}  {}", run.id, run.froude, run.condition));
             if let Some(dir) = into {
-                observed.hear(run);
+                observed.hear(run, campaign);
                 pipeline::write_run_page(campaign, run, overview, dir)?;
             }
             Ok(())
@@ -62,7 +62,7 @@ pub(super) fn replay(
         for reason in observed.left_out() {
             tracing::warn!("left out of the diagnosis: {reason}");
         }
-        pipeline::write_results(campaign, &results, observed.diagnosed().as_ref(), dir)?;
+        pipeline::write_results(campaign, &results, observed.diagnosed(campaign).as_ref(), dir)?;
     }
     for sentence in pipeline::without_runs(&results) {
         tracing::warn!("{sentence}");

@@ -45,6 +45,29 @@ pub(super) fn resolution(run: &Run, quantum_rad: Option<f64>) -> Result<(), Stri
     ))
 }
 
+/// Intervals of the drive that are a hole when they are missing in a row [-].
+const HOLE_INTERVALS: f64 = 5.0;
+/// Share of a half period of the excitation that a line between two samples still follows [-].
+const HOLE_SHARE: f64 = 0.25;
+
+/// Refuses a drive with a hole: between its ends nobody knows what the rod did.
+pub(super) fn drive(run: &Run) -> Result<(), String> {
+    let times_s = &run.drive.time_s;
+    let mut intervals_s: Vec<f64> = times_s.windows(2).map(|two| two[1] - two[0]).collect();
+    intervals_s.sort_by(f64::total_cmp);
+    let Some(typical_s) = intervals_s.get(intervals_s.len() / 2) else { return Ok(()) };
+    let half_s = run.excitation_rad_s.map_or(0.0, |rad_s| std::f64::consts::PI / rad_s);
+    let limit_s = (HOLE_INTERVALS * typical_s).max(HOLE_SHARE * half_s);
+    let hole = times_s.windows(2).find(|two| two[1] - two[0] > limit_s);
+    hole.map_or(Ok(()), |two| {
+        Err(format!(
+            "the force has a hole of {:.3} s after {:.3} s, {limit_s:.3} s can be bridged",
+            two[1] - two[0],
+            two[0]
+        ))
+    })
+}
+
 fn bounds(run: &Run) -> (f64, f64) {
     let bound = |pick: fn(f64, f64) -> f64| run.roll.value.iter().copied().reduce(pick);
     (bound(f64::min).unwrap_or(0.0), bound(f64::max).unwrap_or(0.0))
@@ -94,3 +117,34 @@ pub(super) fn driven(
 }
 
 const WRONG_UNIT: &str = "hint: the units of force and roll in [columns], moment_arm_m, gm_m";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::{RunEnd, RunKind, Series};
+
+    fn forced(missing: std::ops::Range<usize>) -> Run {
+        let kept = (0..2000).filter(|k| !missing.contains(k));
+        let time_s: Vec<f64> = kept.map(|k| f64::from(k as u32) * 0.01).collect();
+        let value = time_s.iter().map(|time_s| (5.0 * time_s).sin()).collect();
+        Run {
+            kind: RunKind::Forced,
+            start_s: 0.0,
+            end_s: 20.0,
+            end: RunEnd::ExcitationChanged,
+            speed_m_s: None,
+            roll: Series::default(),
+            drive: Series { time_s, value },
+            still: None,
+            excitation_rad_s: Some(5.0),
+        }
+    }
+
+    #[test]
+    fn a_force_with_a_hole_is_refused_and_one_that_lacks_a_few_samples_is_not() {
+        assert_eq!(drive(&forced(0..0)), Ok(()));
+        assert_eq!(drive(&forced(700..714)), Ok(()));
+        let refused = drive(&forced(700..780)).unwrap_err();
+        assert!(refused.contains("a hole of 0.810 s after 6.990 s, 0.157 s can"), "{refused}");
+    }
+}

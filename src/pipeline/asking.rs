@@ -16,7 +16,7 @@ const NO_ARM: &str = "a rod force was recorded, but the campaign file has no [ex
 pub(super) struct Asking<'a> {
     campaign: &'a Campaign,
     options: &'a Options,
-    workers: &'a Workers,
+    workers: Workers,
     /// Number of the next run, recordings far apart.
     n_runs: u64,
 }
@@ -26,10 +26,10 @@ impl<'a> Asking<'a> {
     pub(super) fn new(
         campaign: &'a Campaign,
         options: &'a Options,
-        workers: &'a Workers,
+        workers: &Workers,
         index: usize,
     ) -> Self {
-        Self { campaign, options, workers, n_runs: (index as u64) << 32 }
+        Self { campaign, options, workers: workers.clone(), n_runs: (index as u64) << 32 }
     }
 
     /// Where the answer for a run will arrive.

@@ -93,10 +93,25 @@ impl<'c> Collector<'c> {
         self.results.overviews.push(overview);
     }
 
+    /// What was kept so far, without the laws.
+    pub(super) fn so_far(&self) -> &Results {
+        &self.results
+    }
+
     pub(super) fn into_results(mut self) -> Results {
         self.results.froude_laws = froude_laws(&self.results.runs);
         self.results
     }
+}
+
+/// The results of earlier recordings and then of later ones, with the laws of all.
+pub(super) fn joined(earlier: &Results, later: &Results) -> Results {
+    let mut all = earlier.clone();
+    all.runs.extend_from_slice(&later.runs);
+    all.rejected.extend_from_slice(&later.rejected);
+    all.overviews.extend_from_slice(&later.overviews);
+    all.froude_laws = froude_laws(&all.runs);
+    all
 }
 
 /// One law per condition, in the order in which the conditions were first met.

@@ -12,24 +12,18 @@ const MOST_RUNS: usize = 100;
 const NEAR: [f64; 2] = [0.02, 0.03];
 
 /// What the diagnosis will see of the runs heard so far.
-pub struct Observed<'c> {
-    campaign: &'c Campaign,
+#[derive(Debug, Clone, Default)]
+pub struct Observed {
     observations: Vec<Observation>,
     left_out: Vec<String>,
     n_heard: usize,
     n_repeats: usize,
 }
 
-impl<'c> Observed<'c> {
-    /// Nothing yet.
-    pub fn new(campaign: &'c Campaign) -> Self {
-        let (observations, left_out) = (Vec::new(), Vec::new());
-        Self { campaign, observations, left_out, n_heard: 0, n_repeats: 0 }
-    }
-
+impl Observed {
     /// Takes a run whose histories are still with it.
-    pub fn hear(&mut self, run: &IdentifiedRun) {
-        match Observation::new(run, self.campaign, self.n_heard) {
+    pub fn hear(&mut self, run: &IdentifiedRun, campaign: &Campaign) {
+        match Observation::new(run, campaign, self.n_heard) {
             Ok(observation) => self.observations.push(observation),
             Err(reason) => self.left_out.push(format!("{}: {reason}", run.id)),
         }
@@ -52,8 +46,13 @@ impl<'c> Observed<'c> {
     }
 
     /// What the runs say; none without runs.
-    pub fn diagnosed(self) -> Option<Diagnosis> {
-        diagnosis::diagnose(self.observations, &self.campaign.tank)
+    pub fn diagnosed(self, campaign: &Campaign) -> Option<Diagnosis> {
+        diagnosis::diagnose(self.observations, &campaign.tank)
+    }
+
+    /// Runs heard so far.
+    pub fn n_heard(&self) -> usize {
+        self.n_heard
     }
 
     /// Lets go of the second of the runs that have most like them: the first and the last stay.

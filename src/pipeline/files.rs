@@ -80,7 +80,9 @@ pub fn write_results(
     report::csv_tables(campaign, results, dir)?;
     write_text(dir, IDENTIFICATION, &report::identification_json(campaign, results))?;
     write_text(dir, "identification.schema.json", report::IDENTIFICATION_SCHEMA)?;
-    report::write_diagnosis(campaign, diagnosis, dir)?;
+    if diagnosis.is_some() {
+        report::write_diagnosis(campaign, diagnosis, dir)?;
+    }
     catalogue::write(&dir.join(CATALOGUE), campaign, results)?;
     Ok(report::write_campaign(campaign, results, diagnosis, dir)?)
 }

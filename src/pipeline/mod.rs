@@ -10,6 +10,8 @@ mod diagnosing;
 mod error;
 mod files;
 mod histories;
+mod listening;
+mod live;
 mod names;
 mod overview;
 mod play;
@@ -29,11 +31,14 @@ use crate::results::{IdentifiedRun, Overview, Results};
 pub use diagnosing::Observed;
 pub use error::PipelineError;
 pub use files::{REPORT_PAGE, WriteError, results_folder, write_results, write_run_page};
+pub use listening::FoundRun;
+pub use live::{Found, LiveResults, LiveRuns, LiveStep, forget_histories, live};
 pub use names::labels;
 pub use survey::{Surveyed, survey};
 
 use collect::Collector;
-use play::{Heard, size_bytes};
+use listening::Heard;
+use play::size_bytes;
 use workers::Workers;
 
 /// How a campaign is replayed.
@@ -114,7 +119,7 @@ pub fn replay(
                     bytes_total,
                     n_runs: collector.n_runs(),
                 }),
-                Heard::Run { index, identified, overview } => {
+                Heard::Run { index, identified, overview, .. } => {
                     // A worker that panicked has no answer, and the scope passes its panic on.
                     let Ok(identified) = identified.recv() else { break };
                     if let Some(run) = collector.keep(index, identified) {

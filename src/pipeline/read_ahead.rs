@@ -5,7 +5,8 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, Scope, available_parallelism};
 
 use super::claims::Claims;
-use super::play::{self, Heard};
+use super::listening::Heard;
+use super::play;
 use super::workers::Workers;
 use super::{Options, PipelineError};
 use crate::campaign::Campaign;

@@ -25,12 +25,13 @@ struct Job {
 }
 
 /// The threads that identify, one per core.
+#[derive(Clone)]
 pub(super) struct Workers {
     jobs: SyncSender<Job>,
 }
 
 impl Workers {
-    /// Starts the threads; they end when the workers are dropped.
+    /// Starts the threads; they end when every clone of the workers is dropped.
     pub(super) fn start<'s>(scope: &'s Scope<'s, '_>) -> Self {
         let (jobs, waiting) = sync_channel(QUEUE_LENGTH);
         let waiting = Arc::new(Mutex::new(waiting));

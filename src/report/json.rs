@@ -11,7 +11,7 @@ use crate::results::{IdentifiedRun, RejectedStretch, Results};
 use crate::run::{RunEnd, RunKind};
 
 /// Name and version of the contract.
-const SCHEMA_NAME: &str = "rolltank.identification/1";
+pub const IDENTIFICATION_NAME: &str = "rolltank.identification/1";
 
 /// The JSON Schema that every [`identification_json`] keeps.
 pub const IDENTIFICATION_SCHEMA: &str = include_str!("identification.schema.json");
@@ -26,7 +26,7 @@ pub const IDENTIFICATION_SCHEMA: &str = include_str!("identification.schema.json
 /// Never: every key of the document is a string, which is all that can fail.
 pub fn identification_json(campaign: &Campaign, results: &Results) -> String {
     let document = Document {
-        schema: SCHEMA_NAME,
+        schema: IDENTIFICATION_NAME,
         campaign: &campaign.name,
         runs: results.runs.iter().map(|run| RunJson::new(campaign, run)).collect(),
         rejected: results.rejected.iter().map(RejectedJson::new).collect(),

@@ -24,7 +24,7 @@ pub use csv_tables::csv_tables;
 pub use damping_table::damping_table;
 pub use diagnosis_json::{DIAGNOSIS_SCHEMA, diagnosis_json};
 pub use diagnosis_text::diagnosis_text;
-pub use json::{IDENTIFICATION_SCHEMA, identification_json};
+pub use json::{IDENTIFICATION_NAME, IDENTIFICATION_SCHEMA, identification_json};
 
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;

@@ -137,7 +137,7 @@ impl Stretch<'_> {
 
 impl RunEnd {
     /// The reason as the end of a sentence that begins with "until".
-    pub(super) fn clause(self) -> &'static str {
+    pub fn clause(self) -> &'static str {
         match self {
             Self::LostInNoise => "the roll was lost in the noise",
             Self::Caught => "the model was stopped or touched",

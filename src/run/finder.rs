@@ -18,7 +18,8 @@ use super::records::Records;
 
 /// Samples kept per channel: beyond it a run is closed, so that memory stays within some 100 MB.
 const N_SAMPLES_MAX: usize = 2_000_000;
-/// Longest time [s] that the roll waits for a channel that lags behind or has stopped.
+/// Longest time [s] that the roll waits for a channel that lags behind or has stopped, or that a
+/// run waits for the roll.
 const WAIT_MAX_S: f64 = 4.0;
 /// Share of a half period up to which a hole in the roll does not end a run.
 const HOLE_SHARE: f64 = 0.25;
@@ -68,14 +69,23 @@ impl RunFinder {
             Quantity::Roll => self.push_roll(sample.time_s, sample.value, events),
             Quantity::Force | Quantity::Moment => {
                 self.records.drive.push(sample.time_s, sample.value);
+                self.notice_silence(sample.time_s, events);
             }
-            Quantity::Speed => self.records.carriage.push(sample.time_s, sample.value),
+            Quantity::Speed => {
+                self.records.carriage.push(sample.time_s, sample.value);
+                self.notice_silence(sample.time_s, events);
+            }
         }
         self.settle(events);
         self.n_since_forgotten += 1;
         if self.n_since_forgotten >= 1000 {
             self.forget(events);
         }
+    }
+
+    /// Whether neither a run nor any motion is under way, so that nothing is lost by ending here.
+    pub fn is_at_rest(&self) -> bool {
+        self.waiting.is_empty() && self.half_cycles.is_quiet()
     }
 
     /// The recording has ended: closes whatever was under way.
@@ -91,12 +101,7 @@ impl RunFinder {
         if let Some(last_s) = self.records.roll.hole_before(time_s) {
             let bearable_s = self.half_period_s.map_or(0.0, |half_s| HOLE_SHARE * half_s);
             if time_s - last_s > bearable_s {
-                self.drain(events);
-                let (records, limits) = (&self.records, &self.limits);
-                self.motion.end(RunEnd::Gap, last_s, records, limits, events);
-                self.records.interrupt_roll();
-                self.half_cycles = HalfCycles::default();
-                (self.quiet_since_s, self.half_period_s) = (None, None);
+                self.break_off(last_s, events);
             }
         }
         let Some(bin) = self.records.push_roll(time_s, roll_rad) else { return };
@@ -119,6 +124,23 @@ impl RunFinder {
                 self.records.note_still(start_s, left_s);
             }
         }
+    }
+
+    /// The roll instrument may be gone for hours, and the run that it left is known to be over.
+    fn notice_silence(&mut self, time_s: f64, events: &mut Vec<Event>) {
+        let Some(last_s) = self.records.roll.last_s() else { return };
+        if time_s - last_s > WAIT_MAX_S && !self.is_at_rest() {
+            self.break_off(last_s, events);
+        }
+    }
+
+    /// A hole in the roll ends whatever was under way at its last sample.
+    fn break_off(&mut self, last_s: f64, events: &mut Vec<Event>) {
+        self.drain(events);
+        self.motion.end(RunEnd::Gap, last_s, &self.records, &self.limits, events);
+        self.records.interrupt_roll();
+        self.half_cycles = HalfCycles::default();
+        (self.quiet_since_s, self.half_period_s) = (None, None);
     }
 
     /// Passes on what the roll did as soon as it is known how carriage and rod moved then.
@@ -234,6 +256,28 @@ mod tests {
         }
         // Half an hour at 20 Hz.
         assert!(n_most < 38_000, "{n_most} samples");
+    }
+
+    #[test]
+    fn a_roll_instrument_that_is_gone_ends_its_run_while_others_go_on() {
+        let mut finder = RunFinder::new(LIMITS);
+        let mut events = Vec::new();
+        let told_s = (0..4000).map(|k| f64::from(k) * 0.02).find(|&time_s| {
+            let free_s = (time_s - 5.0).max(0.0);
+            let value = 0.2 * (-0.2 * free_s).exp() * (6.0 * free_s).cos();
+            let ripple = 2e-4 * (97.0 * time_s).sin();
+            let roll = Sample { quantity: Quantity::Roll, time_s, value: value + ripple };
+            // The cable is pulled at 12 s and put back a minute later.
+            if !(12.0..72.0).contains(&time_s) {
+                finder.push(&roll, &mut events);
+            }
+            let speed = Sample { quantity: Quantity::Speed, time_s, value: 0.01 * ripple };
+            finder.push(&speed, &mut events);
+            !events.is_empty()
+        });
+        assert!(matches!(&events[0], Event::Run(run) if run.end == RunEnd::Gap), "{events:?}");
+        assert!(told_s.is_some_and(|told_s| (16.0..16.1).contains(&told_s)), "{told_s:?}");
+        assert!(finder.is_at_rest());
     }
 
     #[test]

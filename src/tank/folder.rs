@@ -168,7 +168,7 @@ fn record(
 }
 
 /// Everything of `campaign.toml` before its recordings.
-fn campaign_head(scenario: &Scenario) -> String {
+pub fn campaign_head(scenario: &Scenario) -> String {
     let (hull, water, basin) = (&scenario.hull, &scenario.water, &scenario.tank);
     let mut text = format!(
         "name = {}\n\n[hull]\nlength_pp_m = {:?}\nbeam_m = {:?}\ndraft_m = {:?}\n\

@@ -25,7 +25,7 @@ mod truth;
 mod witness;
 
 pub use action::Action;
-pub use folder::{TankError, truth_path, write_campaign};
+pub use folder::{TankError, campaign_head, truth_path, write_campaign};
 pub use free_roll::FreeRoll;
 pub use instruments::{FileFormat, Instrument, Instruments, RecordingFormat, RollUnit};
 pub use parse::ScenarioError;

@@ -13,6 +13,9 @@ use crate::hull::{Hull, Water};
 /// Name of the scenario.
 pub const NAME: &str = "paper";
 
+/// Name of the part of it that a demonstration has time for.
+pub const SHORT_DAY: &str = "short-day";
+
 /// Table 1: the model.
 pub const HULL: Hull =
     Hull { length_pp_m: 2.5, beam_m: 0.387, draft_m: 0.132, displacement_m3: 0.110, gm_m: 0.074 };
@@ -74,6 +77,8 @@ const FORCED_RAMP_S: f64 = 2.0;
 const FORCED_PER_PASS: usize = 3;
 /// Length of a decay at zero speed [s].
 const DECAY_AT_REST_S: f64 = 40.0;
+/// Froude numbers of the forced runs of a short day [-].
+const FORCED_AT: [f64; 2] = [0.0, 0.2];
 /// Calm water before a decay, and before a forced run [s].
 const CALM_S: [f64; 2] = [8.0, 20.0];
 /// Steady towing before a run begins [s].
@@ -112,6 +117,16 @@ pub fn scenario() -> Scenario {
         conditions,
         passes,
     }
+}
+
+/// Every decay of the paper's campaign, and its forced runs at two speeds.
+pub fn short_day() -> Scenario {
+    let mut scenario = scenario();
+    "Roll damping at forward speed, a short day".clone_into(&mut scenario.name);
+    let is_decay = |pass: &Pass| pass.actions.iter().any(|a| matches!(a, Action::Release { .. }));
+    let is_kept = |pass: &Pass| pass.froude.is_some_and(|froude| FORCED_AT.contains(&froude));
+    scenario.passes.retain(|pass| is_decay(pass) || is_kept(pass));
+    scenario
 }
 
 /// Instruments of a good tank; the paper does not state its own.

@@ -33,9 +33,13 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// A scenario that comes with the program: `"paper"`.
+    /// A scenario that comes with the program: `"paper"`, `"short-day"`.
     pub fn builtin(name: &str) -> Option<Self> {
-        (name == paper::NAME).then(paper::scenario)
+        match name {
+            paper::NAME => Some(paper::scenario()),
+            paper::SHORT_DAY => Some(paper::short_day()),
+            _ => None,
+        }
     }
 
     /// Checks the physical limits of a scenario written by a program, so without lines.
@@ -63,7 +67,7 @@ impl Scenario {
     ///
     /// # Panics
     /// When `index` is not below [`Scenario::pass_count`].
-    pub(super) fn pass_at(&self, index: usize) -> (&Pass, String) {
+    pub fn pass_at(&self, index: usize) -> (&Pass, String) {
         let mut before = 0;
         for pass in &self.passes {
             if index < before + pass.repeat {

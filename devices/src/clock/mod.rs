@@ -45,12 +45,14 @@ impl WallClock {
     #[expect(clippy::disallowed_methods, reason = "the one place where time enters the program")]
     pub fn start_at_speed(speed: f64) -> Self {
         assert!(speed > 0.0, "a clock at speed {speed}");
+        Self { start: Instant::now(), start_unix_ns: Self::unix_ns(), speed }
+    }
+
+    /// What the machine's other clock says, which may step: time since 1970 [ns].
+    #[expect(clippy::disallowed_methods, reason = "recorded beside the clock that never steps")]
+    pub fn unix_ns() -> u128 {
         let since_epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-        Self {
-            start: Instant::now(),
-            start_unix_ns: since_epoch.map_or(0, |passed| passed.as_nanos()),
-            speed,
-        }
+        since_epoch.map_or(0, |passed| passed.as_nanos())
     }
 
     /// Time zero of this clock since 1970 [ns]; never differenced, as NTP may step that clock.

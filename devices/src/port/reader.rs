@@ -87,6 +87,22 @@ pub enum LinkEvent {
     },
 }
 
+impl LinkEvent {
+    /// When it happened on the host's clock [ns]; none for a loss of events, which has no instant.
+    pub fn at_ns(&self) -> Option<u64> {
+        match self {
+            Self::Opened { at_ns }
+            | Self::Sent { at_ns, .. }
+            | Self::Received { at_ns, .. }
+            | Self::Waited { at_ns, .. }
+            | Self::Silence { at_ns }
+            | Self::Lost { at_ns, .. }
+            | Self::Absent { at_ns, .. } => Some(*at_ns),
+            Self::Overflow { .. } => None,
+        }
+    }
+}
+
 /// Where and how a link is made.
 #[derive(Debug, Clone)]
 pub struct LinkOptions {
@@ -141,6 +157,25 @@ impl LinkReader {
         self.events.recv_timeout(wait).ok()
     }
 
+    /// Whether the port's thread has ended, which it does by itself only when it panics.
+    pub fn is_over(&self) -> bool {
+        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
+    /// Closes the port and gives the events that nobody has taken.
+    pub fn close(mut self) -> Vec<LinkEvent> {
+        self.end();
+        self.events.try_iter().collect()
+    }
+
+    fn end(&mut self) {
+        self.stop.store(true, Ordering::Release);
+        if let Some(thread) = self.thread.take() {
+            // A panic of the thread was already told by its own message.
+            drop(thread.join());
+        }
+    }
+
     /// Whether the thread runs under `SCHED_FIFO`.
     pub fn is_realtime(&self) -> bool {
         self.realtime.load(Ordering::Acquire)
@@ -149,11 +184,7 @@ impl LinkReader {
 
 impl Drop for LinkReader {
     fn drop(&mut self) {
-        self.stop.store(true, Ordering::Release);
-        if let Some(thread) = self.thread.take() {
-            // A panic of the thread was already told by its own message.
-            drop(thread.join());
-        }
+        self.end();
     }
 }
 

@@ -25,6 +25,7 @@ use crate::run::{Run, RunKind, Series};
 
 /// Identifies a forced run: from its harmonics where the excitation repeats, else from its course.
 pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, String> {
+    plausible::drive(run)?;
     if run.excitation_rad_s.is_none() {
         return transient::identify(run, setting);
     }

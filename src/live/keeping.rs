@@ -1,0 +1,120 @@
+//! The recording of a session: its name, its records, and its end on a thread of its own.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use devices::clock::WallClock;
+use jiff::Timestamp;
+use replay::{
+    ClosedRecording, Exit, LIVE_SOURCE, LocalDisk, Progress, Provenance, Record, Recorder,
+    ReplayError, Settings,
+};
+
+use super::error::LiveError;
+use crate::campaign::LIVE_FOLDER;
+
+/// Takes the records of a session.
+pub(super) struct Keeper {
+    recorder: Recorder,
+    n_refused: u64,
+}
+
+/// Name of a recording that begins now, relative to the campaign's folder:
+/// `live/2026-11-26_081530.mcap`.
+pub(super) fn fresh_name(folder: &Path, clock: &WallClock, now_ns: u64) -> String {
+    let stamp = stamp(clock, now_ns, "%Y-%m-%d_%H%M%S");
+    let taken = |name: &str| {
+        let part = format!("{name}.part");
+        [name, &part].iter().any(|name| folder.join(name).symlink_metadata().is_ok())
+    };
+    let numbered = (2_u32..).map(|number| format!("{LIVE_FOLDER}/{stamp}_{number}.mcap"));
+    let mut names = std::iter::once(format!("{LIVE_FOLDER}/{stamp}.mcap")).chain(numbered);
+    names.find(|name| !taken(name)).expect("there are fewer files than numbers")
+}
+
+/// Date and time in UTC at a time of the clock [ns].
+pub fn stamp(clock: &WallClock, now_ns: u64, format: &str) -> String {
+    let unix_ns = clock.start_unix_ns() as i128 + i128::from(now_ns);
+    Timestamp::from_nanosecond(unix_ns).unwrap_or_default().strftime(format).to_string()
+}
+
+impl Keeper {
+    /// Begins a recording whose time zero is the clock's.
+    pub(super) fn start(
+        path: &Path,
+        campaign_text: String,
+        clock: &WallClock,
+    ) -> Result<Self, LiveError> {
+        let folder = path.parent().unwrap_or(path);
+        fs::create_dir_all(folder)
+            .map_err(|source| LiveError::File { path: folder.to_owned(), source })?;
+        let provenance = Provenance {
+            campaign_text,
+            source: LIVE_SOURCE.to_owned(),
+            zero_log_time_ns: u64::try_from(clock.start_unix_ns()).unwrap_or_default(),
+        };
+        let recorder = Recorder::start(path, &provenance, Settings::LIVE, Box::new(LocalDisk))?;
+        Ok(Self { recorder, n_refused: 0 })
+    }
+
+    /// Takes a record; a disk that fails is told once and stops nothing else.
+    pub(super) fn push(&mut self, record: Record) {
+        let pushed = self.recorder.push(record);
+        self.told(pushed);
+    }
+
+    /// Does what is due at a time of the world.
+    pub(super) fn tick(&mut self, now: Duration) {
+        let ticked = self.recorder.tick(now);
+        self.told(ticked);
+    }
+
+    fn told(&mut self, done: Result<(), ReplayError>) {
+        let Err(error) = done else { return };
+        let is_record = matches!(
+            error,
+            ReplayError::Unrecordable { .. }
+                | ReplayError::UnrecordableDocument { .. }
+                | ReplayError::TimeBackwards { .. }
+        );
+        self.n_refused += u64::from(is_record);
+        // A broken instrument may bring a thousand such numbers a second.
+        if !is_record || self.n_refused.is_power_of_two() {
+            let (n_refused, hint) = (self.n_refused, error.hint().unwrap_or_default());
+            tracing::error!(n_refused, hint, "not recorded: {error}");
+        }
+    }
+
+    pub(super) fn progress(&self) -> Progress {
+        let progress = self.recorder.progress();
+        Progress { unrecorded: progress.unrecorded + self.n_refused, ..progress }
+    }
+
+    /// Ends the recording; [`ClosedRecording::convert`] gives it its name.
+    pub(super) fn close(self, reason: &str) -> Result<ClosedRecording, LiveError> {
+        Ok(self.recorder.close(Exit::success(reason))?)
+    }
+}
+
+/// Finishes what a daemon that died has left, and tells of it.
+pub(super) fn recover(folder: &Path) -> Result<(), LiveError> {
+    let live: PathBuf = folder.join(LIVE_FOLDER);
+    if !live.exists() {
+        return Ok(());
+    }
+    for orphan in replay::recover(&live, &mut LocalDisk)? {
+        let part = orphan.part.display().to_string();
+        match orphan.fate {
+            replay::Fate::Recovered(finished) => {
+                let (path, torn) = (finished.path.display().to_string(), finished.torn_bytes);
+                tracing::warn!(part, path, torn_bytes = torn, "recovered");
+            }
+            replay::Fate::AlreadyFinished { .. } | replay::Fate::Empty => {
+                tracing::info!(part, "held nothing that is not kept already; removed");
+            }
+            replay::Fate::Left(error) => tracing::error!(part, "left as it is: {error}"),
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,41 @@
+//! The daemon: instruments in, recordings, runs and reports out, all day.
+//!
+//! ```text
+//! port threads -> Event -> one loop -> recorder            (keeping)
+//!                           |    \---> run finder -> identifying threads -> reporter (reporting)
+//!                           |                                                     \---> diagnosis (diagnosing)
+//!                           \---> status -> /healthz /readyz /metrics
+//! ```
+//!
+//! A session is one recording: its instruments are attached when it begins and detached when it
+//! ends, so that its raw bytes alone give its samples again. The daemon runs one session after the
+//! other; every queue between threads is bounded, and what finds no place is counted.
+
+mod attached;
+mod attaching;
+mod daemon;
+mod diagnosing;
+mod error;
+mod event;
+mod health;
+mod keeping;
+mod metrics;
+mod reporting;
+mod session;
+pub mod status;
+mod supervisor;
+mod tally;
+mod telling;
+mod under_way;
+mod virtual_day;
+mod virtual_tank;
+mod zeroing;
+
+pub use daemon::{DaemonOptions, run};
+pub use error::LiveError;
+pub use event::{Order, Orders, orders};
+pub use health::Listen;
+pub use keeping::stamp;
+pub use status::{SharedStatus, Status};
+pub use virtual_day::{DayEnded, DayProgress, virtual_day};
+pub use virtual_tank::VirtualTank;

@@ -1,0 +1,117 @@
+//! The reporter: writes the page of each run at once, then the campaign's, beside the loop.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+
+use devices::clock::Clock;
+use tokio::sync::mpsc::Sender;
+
+use super::diagnosing::Diagnoser;
+use super::event::Event;
+use crate::campaign::Campaign;
+use crate::diagnosis::Diagnosis;
+use crate::pipeline::{self, FoundRun, LiveResults, LiveStep};
+use crate::report;
+use crate::results::{IdentifiedRun, Results};
+
+/// What became of a run.
+pub(super) struct Reported {
+    /// As it was found.
+    pub(super) found: FoundRun,
+    /// What it says, or why it says nothing.
+    pub(super) outcome: Result<Identified, String>,
+    /// When its page was on disk [ns].
+    pub(super) at_ns: u64,
+}
+
+/// A run that was identified.
+pub(super) struct Identified {
+    /// Its id in results.
+    pub(super) id: String,
+    /// Its identification by the JSON contract.
+    pub(super) document: String,
+    /// One line about it.
+    pub(super) summary: String,
+}
+
+/// Writes reports until the recording has ended.
+pub(super) struct Reporter<'a> {
+    /// The campaign of this session.
+    pub(super) campaign: &'a Campaign,
+    /// Where the runs come from.
+    pub(super) results: LiveResults<'a>,
+    /// What earlier recordings taught, as soon as that is known again.
+    pub(super) earlier: Receiver<Option<Results>>,
+    /// The daemon's clock.
+    pub(super) clock: Arc<dyn Clock>,
+    /// What finds out what the simulation gets wrong.
+    pub(super) diagnoser: Diagnoser,
+    /// The loop.
+    pub(super) events: Sender<Event>,
+}
+
+impl Reporter<'_> {
+    /// Reports each run, and in the end gives all results, earlier ones included; none when those
+    /// are not known again.
+    pub(super) fn run(mut self) -> Option<Results> {
+        let dir = pipeline::results_folder(self.campaign);
+        let mut known: Option<Results> = None;
+        loop {
+            let reported = match self.results.next_step() {
+                None => break,
+                Some(LiveStep::Noted) => continue,
+                Some(LiveStep::Refused { found, reason }) => {
+                    Reported { found, outcome: Err(reason), at_ns: self.clock.now_ns() }
+                }
+                Some(LiveStep::Identified { found, run, overview }) => {
+                    if let Err(error) =
+                        pipeline::write_run_page(self.campaign, run, &overview, &dir)
+                    {
+                        tracing::error!(run = run.id, "page not written: {error}");
+                    }
+                    let at_ns = self.clock.now_ns();
+                    let outcome = Ok(identified(self.campaign, run));
+                    self.diagnoser.hear(run, self.campaign);
+                    self.diagnoser.ask();
+                    pipeline::forget_histories(run);
+                    Reported { found, outcome, at_ns }
+                }
+            };
+            // A loop that has ended was told everything before.
+            self.events.blocking_send(Event::Reported(Box::new(reported))).ok();
+            known = known.or_else(|| self.earlier.try_recv().ok().flatten());
+            // Pages of earlier runs would be taken for stale ones before those are known again.
+            if let Some(earlier) = &known {
+                let diagnosis = self.diagnoser.newest();
+                let results = self.results.results(earlier);
+                write(self.campaign, &results, diagnosis.as_deref(), &dir);
+            }
+        }
+        self.events.blocking_send(Event::AllReported).ok();
+        let earlier = known.or_else(|| self.earlier.recv().ok().flatten())?;
+        let results = self.results.results(&earlier);
+        let diagnosis = self.diagnoser.last(self.campaign);
+        write(self.campaign, &results, diagnosis.as_deref(), &dir);
+        Some(results)
+    }
+}
+
+fn write(campaign: &Campaign, results: &Results, diagnosis: Option<&Diagnosis>, dir: &Path) {
+    if let Err(error) = pipeline::write_results(campaign, results, diagnosis, dir) {
+        tracing::error!("results not written: {error}");
+    }
+}
+
+fn identified(campaign: &Campaign, run: &IdentifiedRun) -> Identified {
+    let alone = Results { runs: vec![run.clone()], ..Results::default() };
+    let b1 = &run.identification.damping.b1_per_s;
+    Identified {
+        id: run.id.clone(),
+        document: report::identification_json(campaign, &alone),
+        summary: format!(
+            "Fr {:.3}, b1 = {:.4} 1/s ({:.4} to {:.4})",
+            run.froude, b1.mean, b1.lo95, b1.hi95
+        ),
+    }
+}

@@ -1,0 +1,157 @@
+//! One recording from its first byte to its last, with the threads that it takes.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::sync_channel;
+use std::thread;
+
+use devices::clock::{Clock, WallClock};
+use replay::ClosedRecording;
+use tokio::sync::mpsc;
+
+use super::attaching::Detach;
+use super::diagnosing::Diagnoser;
+use super::error::LiveError;
+use super::event::{EVENTS_WAITING, Order};
+use super::keeping::{Keeper, fresh_name};
+use super::reporting::Reporter;
+use super::status::SharedStatus;
+use super::supervisor::Supervisor;
+use super::under_way::{Ended, State, UnderWay};
+use crate::campaign::{Campaign, Recording};
+use crate::pipeline::{self, Options};
+use crate::results::Results;
+
+/// What a session is made of.
+pub(super) struct Plan {
+    /// The campaign, earlier recordings included.
+    pub(super) campaign: Campaign,
+    /// The text of its file.
+    pub(super) text: String,
+    /// What earlier recordings taught, when that is still known.
+    pub(super) earlier: Option<Results>,
+    /// What finds out what the simulation gets wrong, with the runs that it knows.
+    pub(super) diagnoser: Diagnoser,
+    /// Age [s] at which a recording gives way to the next when the model is at rest.
+    pub(super) rotate_s: f64,
+}
+
+/// What a session leaves.
+pub(super) struct Left {
+    pub(super) ended: Ended,
+    /// The recording, still to be converted.
+    pub(super) closed: ClosedRecording,
+    /// Everything learnt so far.
+    pub(super) results: Option<Results>,
+    /// The campaign's recordings, this one the last of them.
+    pub(super) recordings: Vec<Recording>,
+}
+
+/// What the daemon lends to every session.
+pub(super) struct Lent<'l> {
+    pub(super) runtime: &'l tokio::runtime::Handle,
+    pub(super) clock: &'l Arc<WallClock>,
+    pub(super) orders: &'l mut mpsc::Receiver<Order>,
+    pub(super) status: &'l SharedStatus,
+    pub(super) supervisor: &'l mut Supervisor,
+}
+
+/// Records until something ends the session.
+pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
+    let Plan { mut campaign, text, earlier, diagnoser, rotate_s } = plan;
+    let Lent { runtime, clock, orders, status, supervisor } = lent;
+    let before = campaign.clone();
+    let now_ns = clock.now_ns();
+    let name = fresh_name(&campaign.folder, clock, now_ns);
+    let path = campaign.folder.join(&name);
+    campaign.recordings.push(Recording {
+        name,
+        files: vec![(None, path.clone())],
+        condition: campaign.live.condition.clone(),
+        speed_m_s: campaign.live.speed_m_s,
+        line: None,
+    });
+    let campaign = &campaign;
+    let keeper = Keeper::start(&path, text.clone(), clock)?;
+    let options = Options { keep_histories: false, ..Options::default() };
+    let detach = Detach::default();
+    let (sender, events) = mpsc::channel(EVENTS_WAITING);
+    let (teller, earlier_told) = sync_channel(1);
+    let knows_earlier = &AtomicBool::new(false);
+    let (recorded, results) = thread::scope(|scope| {
+        let (terminating, heard_by) = (detach.clone(), diagnoser.clone());
+        scope.spawn(move || {
+            let earlier = earlier.or_else(|| replayed(&before, &terminating, &heard_by));
+            // The reporter is there as long as the loop, and waits for this.
+            teller.send(earlier).ok();
+            knows_earlier.store(true, Ordering::Release);
+        });
+        let (runs, results) = pipeline::live(scope, campaign, &options);
+        let mut under_way = UnderWay {
+            campaign,
+            clock,
+            status,
+            supervisor,
+            keeper,
+            runs: Some(runs),
+            detach: detach.clone(),
+            rotate_s,
+            knows_earlier,
+            state: State::default(),
+        };
+        let attached = under_way.attach(scope, &sender, text);
+        let reporter = Reporter {
+            campaign,
+            results,
+            earlier: earlier_told,
+            clock: Arc::clone(clock) as Arc<dyn Clock>,
+            diagnoser,
+            events: sender,
+        };
+        let reporter = scope.spawn(move || reporter.run());
+        let recorded = match attached {
+            Ok(()) => Ok(runtime.block_on(under_way.record(events, orders))),
+            Err(error) => {
+                // Whatever was started ends when the loop's end of the queues is gone.
+                detach.now();
+                drop((under_way, events));
+                Err(error)
+            }
+        };
+        (recorded, reporter.join())
+    });
+    let (ended, keeper) = recorded?;
+    let reason = match ended {
+        Ended::Terminated => "the daemon was asked to end",
+        Ended::Reloaded(_) => "a new campaign file came into force",
+        Ended::Rotated => "it was long enough",
+        Ended::Broken => "the thread of a port died",
+    };
+    let closed = keeper.close(reason)?;
+    let results = results.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    let recordings = campaign.recordings.clone();
+    Ok(Left { ended, closed, results, recordings })
+}
+
+/// What earlier recordings of the campaign say, their pages written again; none when the daemon is
+/// to end before that is known.
+fn replayed(campaign: &Campaign, terminating: &Detach, diagnoser: &Diagnoser) -> Option<Results> {
+    let dir = pipeline::results_folder(campaign);
+    let options = Options { keep_histories: false, ..Options::default() };
+    let replayed = pipeline::replay(campaign, &options, &mut |_| {}, &mut |run, overview| {
+        if terminating.is_wanted() {
+            return Err("the daemon is to end".into());
+        }
+        diagnoser.hear(run, campaign);
+        pipeline::write_run_page(campaign, run, overview, &dir)?;
+        Ok(())
+    });
+    match replayed {
+        Ok(results) => Some(results),
+        Err(_) if terminating.is_wanted() => None,
+        Err(error) => {
+            tracing::error!("earlier recordings are not in the results: {error}");
+            Some(Results::default())
+        }
+    }
+}

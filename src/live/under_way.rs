@@ -1,0 +1,309 @@
+//! A recording under way: the loop that takes every event in turn.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::Scope;
+use std::time::Duration;
+
+use devices::clock::{Clock, WallClock};
+use devices::port::LinkEvent;
+use devices::{Instrument, Quantity, Sample};
+use replay::{CampaignFile, ClockReading, LinkLosses, Note, Record};
+use tokio::sync::mpsc::{Receiver, Sender};
+
+use super::attached::{Attached, Taken};
+use super::attaching::{Detach, forward};
+use super::error::{LiveError, no_devices};
+use super::event::{Event, Order};
+use super::keeping::Keeper;
+use super::status::{RecordedStatus, SharedStatus};
+use super::supervisor::Supervisor;
+use crate::campaign::{self, Campaign, FILE_NAME};
+use crate::pipeline::{Found, LiveRuns};
+
+/// How often time is told to the loop.
+const TICK: Duration = Duration::from_millis(50);
+/// Without a sample of roll for so long [s] nothing can be under way.
+const ROLL_AWAY_S: f64 = 10.0;
+/// Rest [s] before a new campaign file comes into force: a model that is heeled for its release is
+/// held no longer than that without a movement.
+const RELOAD_REST_S: f64 = 1.0;
+/// Rest [s] before one recording gives way to the next for its length alone.
+const ROTATE_REST_S: f64 = 30.0;
+
+/// Why a recording ended.
+pub(super) enum Ended {
+    /// The daemon is to end.
+    Terminated,
+    /// A new campaign file is in force.
+    Reloaded(Box<Reload>),
+    /// The recording was long enough.
+    Rotated,
+    /// A port's thread has died, which a new start may mend.
+    Broken,
+}
+
+/// A campaign file that was read again.
+pub(super) struct Reload {
+    pub(super) campaign: Campaign,
+    /// Its text, as it was when it was read.
+    pub(super) text: String,
+}
+
+/// A recording under way.
+pub(super) struct UnderWay<'a> {
+    pub(super) campaign: &'a Campaign,
+    pub(super) clock: &'a Arc<WallClock>,
+    pub(super) status: &'a SharedStatus,
+    pub(super) supervisor: &'a mut Supervisor,
+    pub(super) keeper: Keeper,
+    /// Where samples go, until the recording has ended.
+    pub(super) runs: Option<LiveRuns<'a>>,
+    pub(super) detach: Detach,
+    /// Age [s] at which the recording gives way to the next when the model is at rest.
+    pub(super) rotate_s: f64,
+    /// Whether it is known what earlier recordings taught; before, no other can begin.
+    pub(super) knows_earlier: &'a AtomicBool,
+    pub(super) state: State,
+}
+
+/// What changes from event to event.
+#[derive(Default)]
+pub(super) struct State {
+    pub(super) attached: Vec<Attached>,
+    pub(super) n_attached: usize,
+    pub(super) losses: LinkLosses,
+    pub(super) found: Vec<Found>,
+    pub(super) taken: Taken,
+    /// When the sample came by which each run was known to have ended [ns].
+    pub(super) decided_ns: BTreeMap<u64, u64>,
+    pub(super) began_ns: u64,
+    /// When the model last moved, and when a sample of its roll last came [ns].
+    pub(super) moved_ns: u64,
+    pub(super) roll_ns: u64,
+    pub(super) n_events: u64,
+    pub(super) reload: Option<Box<Reload>>,
+    pub(super) ended: Option<Ended>,
+    pub(super) all_reported: bool,
+}
+
+impl UnderWay<'_> {
+    /// Attaches every device and records what is known of them.
+    pub(super) fn attach<'s>(
+        &mut self,
+        scope: &'s Scope<'s, '_>,
+        events: &Sender<Event>,
+        text: String,
+    ) -> Result<(), LiveError> {
+        let now_ns = self.clock.now_ns();
+        let time_s = now_ns as f64 / 1e9;
+        self.state.began_ns = now_ns;
+        (self.state.moved_ns, self.state.roll_ns) = (now_ns, now_ns);
+        self.keeper.push(Record::Campaign(CampaignFile { time_s, text }));
+        self.read_clocks();
+        let live = &self.campaign.live;
+        for (device, config) in live.devices.iter().enumerate() {
+            let clock = Arc::clone(self.clock) as Arc<dyn Clock>;
+            let (reader, interpreter, latency_s) = Instrument::start(config, clock)?.into_parts();
+            let of_name = live.setups.iter().find(|setup| setup.name == config.name);
+            let profile = of_name.map_or("", |setup| setup.profile.as_str());
+            let records = Attached::introduction(config, profile, latency_s, time_s)?;
+            for record in records {
+                self.keeper.push(record);
+            }
+            self.state.attached.push(Attached::new(config, interpreter));
+            forward(scope, device, reader, events.clone(), self.detach.clone());
+            self.state.n_attached += 1;
+        }
+        self.supervisor.ready("recording");
+        let (campaign, state) = (self.campaign, &self.state);
+        self.status.change(|status| {
+            status.campaign.clone_from(&campaign.name);
+            status.condition.clone_from(&campaign.live.condition);
+            let recording = campaign.recordings.last();
+            status.recording = recording.map_or(String::new(), |last| last.name.clone());
+            status.n_sessions += 1;
+            status.devices = state.attached.iter().map(Attached::status).collect();
+            status.reload_waits = false;
+        });
+        Ok(())
+    }
+
+    /// Both clocks at once: what differs between two such records is a step or a drift.
+    fn read_clocks(&mut self) {
+        let monotonic_ns = self.clock.now_ns();
+        self.keeper.push(Record::Clock(ClockReading {
+            time_s: monotonic_ns as f64 / 1e9,
+            monotonic_ns,
+            realtime_ns: u64::try_from(WallClock::unix_ns()).unwrap_or_default(),
+            tai_offset_s: 0,
+        }));
+    }
+
+    /// Takes events until the recording has ended and every run of it was reported.
+    pub(super) async fn record(
+        mut self,
+        mut events: Receiver<Event>,
+        orders: &mut Receiver<Order>,
+    ) -> (Ended, Keeper) {
+        let mut ticks = tokio::time::interval(TICK);
+        ticks.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
+        loop {
+            let event = tokio::select! {
+                Some(event) = events.recv() => event,
+                Some(order) = orders.recv() => Event::Order(order),
+                _ = ticks.tick() => Event::Tick,
+            };
+            self.state.n_events += 1;
+            match event {
+                Event::Link { device, link } => self.link(device, &link),
+                Event::Detached => {
+                    self.state.n_attached -= 1;
+                    if self.state.ended.is_none() {
+                        tracing::error!("the thread of a port has died");
+                        self.end(Ended::Broken);
+                    }
+                    if self.state.n_attached == 0 {
+                        self.end_runs();
+                    }
+                }
+                Event::Reported(reported) => self.reported(*reported),
+                Event::AllReported => self.state.all_reported = true,
+                Event::Order(Order::Terminate) => self.end(Ended::Terminated),
+                Event::Order(Order::Reload) => self.read_again(),
+                Event::Tick => self.tick(),
+            }
+            if self.state.all_reported
+                && let Some(ended) = self.state.ended.take()
+            {
+                self.renew_status();
+                return (ended, self.keeper);
+            }
+        }
+    }
+
+    fn link(&mut self, device: usize, link: &LinkEvent) {
+        let now_ns = self.clock.now_ns();
+        let now_s = now_ns as f64 / 1e9;
+        let mut taken = std::mem::take(&mut self.state.taken);
+        if let Some(attached) = self.state.attached.get_mut(device) {
+            attached.take(link, now_s, &mut self.state.losses, &mut taken);
+        }
+        taken.records.drain(..).for_each(|record| self.keeper.push(record));
+        self.samples(&taken.samples, link.at_ns().unwrap_or(now_ns));
+        taken.samples.clear();
+        self.state.taken = taken;
+    }
+
+    fn samples(&mut self, samples: &[Sample], at_ns: u64) {
+        let state = &mut self.state;
+        for sample in samples {
+            if sample.quantity == Quantity::Roll {
+                state.roll_ns = at_ns;
+            }
+        }
+        let Some(runs) = &mut self.runs else { return };
+        runs.push(samples, &mut state.found);
+        if !runs.is_at_rest() {
+            state.moved_ns = at_ns;
+        }
+        self.take_found(at_ns);
+    }
+
+    /// Detaches the devices, unless that is under way; the rest follows from their last events.
+    fn end(&mut self, ended: Ended) {
+        if matches!(ended, Ended::Terminated) {
+            self.supervisor.stopping();
+        }
+        if self.state.ended.is_none() || matches!(ended, Ended::Terminated) {
+            self.state.ended = Some(ended);
+        }
+        self.detach.now();
+    }
+
+    /// The last event of the last device was taken.
+    fn end_runs(&mut self) {
+        let Some(runs) = self.runs.take() else { return };
+        let mut notes: Vec<Note> = Vec::new();
+        self.state.losses.notes(&mut notes);
+        self.read_clocks();
+        runs.end(notes, &mut self.state.found);
+        self.take_found(self.clock.now_ns());
+    }
+
+    /// Reads the campaign file again; a wrong one changes nothing.
+    fn read_again(&mut self) {
+        self.supervisor.reloading();
+        let folder = &self.campaign.folder;
+        let text = fs::read_to_string(folder.join(FILE_NAME)).unwrap_or_default();
+        let none = || vec![no_devices(folder)];
+        let read = campaign::read(folder);
+        let read =
+            read.and_then(|read| if read.live.devices.is_empty() { Err(none()) } else { Ok(read) });
+        match read {
+            Ok(campaign) => {
+                tracing::info!("the new campaign file is in force from the next rest on");
+                self.state.reload = Some(Box::new(Reload { campaign, text }));
+                self.status.change(|status| {
+                    status.reload_waits = true;
+                    status.refused_reload = None;
+                });
+            }
+            Err(mistakes) => {
+                for mistake in &mistakes {
+                    let hint = mistake.hint.clone().unwrap_or_default();
+                    tracing::error!(hint, "the campaign file stays as it was: {mistake}");
+                }
+                let told: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
+                self.status.change(|status| status.refused_reload = Some(told.join("; ")));
+            }
+        }
+        // From here on the daemon follows the file by itself, at the next rest.
+        self.supervisor.ready("recording");
+    }
+
+    fn tick(&mut self) {
+        let now_ns = self.clock.now_ns();
+        self.keeper.tick(self.clock.real(now_ns));
+        self.supervisor.alive(self.clock.real(now_ns));
+        let since_s = |at_ns: u64| now_ns.saturating_sub(at_ns) as f64 / 1e9;
+        let state = &mut self.state;
+        let roll_is_away = since_s(state.roll_ns) > ROLL_AWAY_S;
+        let rested_s = if roll_is_away { f64::INFINITY } else { since_s(state.moved_ns) };
+        let may_end = state.ended.is_none() && self.knows_earlier.load(Ordering::Acquire);
+        if may_end && rested_s >= RELOAD_REST_S && state.reload.is_some() {
+            if let Some(reload) = state.reload.take() {
+                self.end(Ended::Reloaded(reload));
+            }
+        } else if may_end
+            && rested_s >= ROTATE_REST_S
+            && since_s(state.began_ns) >= self.rotate_s
+            && !roll_is_away
+            // On a full disk no other could begin.
+            && !self.keeper.progress().stopped
+        {
+            self.end(Ended::Rotated);
+        }
+        self.renew_status();
+    }
+
+    fn renew_status(&mut self) {
+        let progress = self.keeper.progress();
+        let (state, at_s) = (&self.state, self.clock.now_ns() as f64 / 1e9);
+        let n_unheard = self.runs.as_ref().map_or(0, LiveRuns::n_unheard);
+        self.status.change(|status| {
+            status.at_s = at_s;
+            status.n_events = state.n_events;
+            status.devices = state.attached.iter().map(Attached::status).collect();
+            status.runs.n_unheard = status.runs.n_unheard.max(n_unheard);
+            status.recorded = RecordedStatus {
+                records: progress.records,
+                unrecorded: progress.unrecorded,
+                part_bytes: progress.part_bytes,
+                stopped: progress.stopped,
+            };
+        });
+    }
+}

@@ -1,0 +1,143 @@
+//! One stream of samples on its way through the run finder, recorded or live.
+
+use std::sync::mpsc::Receiver;
+
+use devices::{Quantity, Sample};
+use replay::Note;
+
+use super::Options;
+use super::asking::Asking;
+use super::overview::OverviewBuilder;
+use super::workers::{Identified, Workers};
+use crate::campaign::{Campaign, Recording};
+use crate::results::Overview;
+use crate::run::{Event, Limits, Rejection, RunEnd, RunFinder, RunKind};
+
+/// What a stream tells whoever collects its runs.
+pub(super) enum Heard {
+    /// The next batch of samples covers this stretch [s] of absolute time.
+    Covered { start_s: f64, end_s: f64 },
+    /// A batch of samples has been read; bytes of this recording so far.
+    Read { index: usize, bytes_read: u64 },
+    /// A run has ended and is being identified; the overview shows the recording up to here.
+    Run { index: usize, found: FoundRun, identified: Receiver<Identified>, overview: Overview },
+    /// A stretch will not be used.
+    Rejected { index: usize, rejection: Rejection },
+    /// The recording has ended.
+    Ended { overview: Overview, notes: Vec<Note> },
+}
+
+/// A run as it was found, before it is known what it says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoundRun {
+    /// Its number in the recording, counted from 1.
+    pub number: u64,
+    /// Decay or forced.
+    pub kind: RunKind,
+    /// First instant used [s].
+    pub start_s: f64,
+    /// Last instant used [s].
+    pub end_s: f64,
+    /// Why it ends there.
+    pub end: RunEnd,
+}
+
+/// The listener has gone away, so there is nobody to play for.
+pub(super) struct Unheard;
+
+/// Whoever is told.
+pub(super) type Tell<'t> = dyn FnMut(Heard) -> Result<(), Unheard> + 't;
+
+/// A stream under way.
+pub(super) struct Listening<'a> {
+    index: usize,
+    recording: &'a str,
+    finder: RunFinder,
+    events: Vec<Event>,
+    overview: OverviewBuilder,
+    drive_is_moment: bool,
+    asking: Asking<'a>,
+    n_found: u64,
+}
+
+impl<'a> Listening<'a> {
+    /// At the start of the recording at `index`.
+    pub(super) fn new(
+        campaign: &'a Campaign,
+        options: &'a Options,
+        workers: &Workers,
+        index: usize,
+    ) -> Self {
+        let recording = &campaign.recordings[index];
+        Self {
+            index,
+            recording: &recording.name,
+            finder: RunFinder::new(limits(campaign, recording)),
+            events: Vec::new(),
+            overview: OverviewBuilder::default(),
+            drive_is_moment: false,
+            asking: Asking::new(campaign, options, workers, index),
+            n_found: 0,
+        }
+    }
+
+    /// Whether neither a run nor any motion is under way.
+    pub(super) fn is_at_rest(&self) -> bool {
+        self.finder.is_at_rest()
+    }
+
+    pub(super) fn batch(&mut self, batch: &[Sample], tell: &mut Tell<'_>) -> Result<(), Unheard> {
+        for sample in batch {
+            self.drive_is_moment |= sample.quantity == Quantity::Moment;
+            self.overview.push(sample);
+            self.finder.push(sample, &mut self.events);
+            if !self.events.is_empty() {
+                self.tell_events(tell)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The stream has ended; `notes` say what was lost of it.
+    pub(super) fn end(&mut self, notes: Vec<Note>, tell: &mut Tell<'_>) -> Result<(), Unheard> {
+        self.finder.finish(&mut self.events);
+        self.tell_events(tell)?;
+        let messages = notes.iter().map(|note| note.message.clone()).collect();
+        let overview = self.overview.so_far(self.recording, messages);
+        tell(Heard::Ended { overview, notes })
+    }
+
+    fn tell_events(&mut self, tell: &mut Tell<'_>) -> Result<(), Unheard> {
+        for event in std::mem::take(&mut self.events) {
+            let index = self.index;
+            tell(match event {
+                Event::Run(run) => {
+                    self.n_found += 1;
+                    Heard::Run {
+                        index,
+                        found: FoundRun {
+                            number: self.n_found,
+                            kind: run.kind,
+                            start_s: run.start_s,
+                            end_s: run.end_s,
+                            end: run.end,
+                        },
+                        identified: self.asking.identify(run, self.drive_is_moment),
+                        overview: self.overview.so_far(self.recording, Vec::new()),
+                    }
+                }
+                Event::Rejected(rejection) => Heard::Rejected { index, rejection },
+            })?;
+        }
+        Ok(())
+    }
+}
+
+fn limits(campaign: &Campaign, recording: &Recording) -> Limits {
+    Limits {
+        carriage_max_speed_m_s: campaign.tank.carriage_max_speed_m_s,
+        declared_speed_m_s: recording.speed_m_s,
+        length_pp_m: campaign.hull.length_pp_m,
+        gravity_m_s2: campaign.water.gravity_m_s2,
+    }
+}

@@ -1,0 +1,183 @@
+//! Cables are pulled and put back, the daemon is killed: what was measured stays, the rest is told.
+
+use std::time::{Duration, Instant};
+
+use devices::emulator::Fault;
+use replay::{Gap, LossKind, Record, Recorded, RunStop};
+
+use super::campaign_folder::rolltank;
+use super::live_tank::{B1_PER_S, Daemon, LiveTank, RELEASED_S};
+
+/// Every record of the tank's only recording.
+fn records(tank: &LiveTank) -> Vec<Record> {
+    let files = tank.files("live", ".mcap");
+    let [file] = &files[..] else { panic!("{files:?}") };
+    let mut recorded = Recorded::open(file).expect("it is whole");
+    std::iter::from_fn(|| recorded.next_record().expect("it can be read")).collect()
+}
+
+fn gaps(records: &[Record]) -> Vec<&Gap> {
+    let gaps = records.iter().filter_map(|record| match record {
+        Record::Gap(gap) => Some(gap),
+        _ => None,
+    });
+    gaps.collect()
+}
+
+fn stops(records: &[Record]) -> Vec<&RunStop> {
+    let stops = records.iter().filter_map(|record| match record {
+        Record::RunStop(stop) => Some(stop),
+        _ => None,
+    });
+    stops.collect()
+}
+
+/// CPU time of a process [s], all threads.
+fn cpu_s(id: u32) -> f64 {
+    let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).expect("Linux tells it");
+    let after_name = stat.rsplit(')').next().unwrap_or_default();
+    let ticks = after_name.split_whitespace().skip(11).take(2);
+    ticks.map(|ticks| ticks.parse::<f64>().expect("a count")).sum::<f64>() / 100.0
+}
+
+#[test]
+#[expect(clippy::disallowed_methods, reason = "how fast a loss is told is what it is about")]
+fn a_cable_pulled_during_a_decay_ends_the_run_there_and_one_put_back_is_taken_up_again() {
+    let tank = LiveTank::at_speed(8.0);
+    let mut daemon = Daemon::start(&tank, &[]);
+    daemon.wait_for("linked", 2);
+    tank.sleep_until_in_round(RELEASED_S + 7.0);
+    let pulled = Instant::now();
+    tank.port(0).unplug();
+    daemon.wait_for("link lost", 1);
+    let told = pulled.elapsed();
+    // The run that was cut is reported while the cable is out.
+    daemon.wait_for("latency_s=", 1);
+    tank.port(1).unplug();
+    std::thread::sleep(Duration::from_millis(500));
+    let before_s = cpu_s(daemon.id());
+    std::thread::sleep(Duration::from_secs(5));
+    let share = (cpu_s(daemon.id()) - before_s) / 5.0;
+    let put_back = Instant::now();
+    tank.port(0).replug();
+    daemon.wait_for("linked", 3);
+    let back = put_back.elapsed();
+    tank.port(1).replug();
+    println!("told after {told:?}, back after {back:?}, {:.2} % CPU while away", 100.0 * share);
+    assert!(told < Duration::from_secs(1), "{told:?}");
+    assert!(back < Duration::from_secs(3), "{back:?}");
+    assert!(share < 0.01, "{share}");
+    daemon.wait_for("latency_s=", 2);
+    let (status, said) = daemon.terminate();
+    assert_eq!(status.code(), Some(0), "{said}");
+
+    let records = records(&tank);
+    let gaps = gaps(&records);
+    let roll = gaps.iter().find(|gap| gap.channel == "roll").expect("a gap was recorded");
+    assert!(roll.reason.contains("link was lost"), "{roll:?}");
+    assert!(roll.end_s - roll.start_s > 10.0 && roll.lost.is_some_and(|lost| lost > 1000));
+    let stops = stops(&records);
+    assert_eq!(stops[0].reason, "the record had a hole", "{stops:?}");
+    assert!((stops[0].end_s - roll.start_s).abs() < 0.5, "{stops:?}");
+
+    let live = tank.text("results/identification.json");
+    let replayed = rolltank(tank.path(), &["identify", ".", "--json"]);
+    // Data were lost, and the replay says so with its exit code.
+    assert_eq!(replayed.exit, 3, "{}", replayed.err);
+    assert_eq!(replayed.out, live, "{said}");
+}
+
+#[test]
+fn samples_that_fail_within_a_run_are_masked_and_counted() {
+    let tank = LiveTank::at_speed(8.0);
+    // A day may begin before everything is plugged in.
+    tank.port(0).unplug();
+    let mut daemon = Daemon::start(&tank, &[]);
+    daemon.wait_for("does not exist", 1);
+    tank.port(0).replug();
+    daemon.wait_for("linked", 2);
+    tank.sleep_until_in_round(RELEASED_S + 5.0);
+    for fault in [Fault::Skip(5), Fault::Repeat(3), Fault::Noise(20)] {
+        tank.port(0).fault(fault);
+        std::thread::sleep(Duration::from_millis(60));
+    }
+    daemon.wait_for("latency_s=", 1);
+    let (status, said) = daemon.terminate();
+    assert_eq!(status.code(), Some(0), "{said}");
+    let records = records(&tank);
+    let stops = stops(&records);
+    let roll = stops[0].counts.iter().find(|counts| counts.channel == "roll").expect("roll");
+    assert!(roll.lost >= 5 && roll.repeated == 3 && roll.damaged >= 1, "{roll:?}");
+    assert!(roll.samples > 1000, "{roll:?}");
+    let live: serde_json::Value =
+        serde_json::from_str(&tank.text("results/identification.json")).expect("JSON");
+    let run = &live["runs"][0];
+    assert!(run["end_s"].as_f64() > run["start_s"].as_f64().map(|start_s| start_s + 10.0));
+    let mean = run["b1_per_s"]["mean"].as_f64().expect("b1");
+    assert!((mean - B1_PER_S).abs() < 0.1, "{run}");
+}
+
+#[test]
+fn an_over_driven_instrument_is_masked_and_counted_and_ends_the_run() {
+    let tank = LiveTank::at_speed(8.0);
+    let mut daemon = Daemon::start(&tank, &[]);
+    daemon.wait_for("linked", 2);
+    tank.sleep_until_in_round(RELEASED_S + 8.0);
+    tank.port(0).fault(Fault::Saturate(true));
+    std::thread::sleep(Duration::from_millis(300));
+    tank.port(0).fault(Fault::Saturate(false));
+    daemon.wait_for("latency_s=", 1);
+    let (status, said) = daemon.terminate();
+    assert_eq!(status.code(), Some(0), "{said}");
+    let records = records(&tank);
+    let n_over_range: u64 = records
+        .iter()
+        .map(|record| match record {
+            Record::Loss(loss) if loss.kind == LossKind::OverRange => loss.count,
+            _ => 0,
+        })
+        .sum();
+    assert!(n_over_range > 100, "{n_over_range}");
+    let stops = stops(&records);
+    assert_eq!(stops[0].reason, "the record had a hole", "{stops:?}");
+    let live = tank.text("results/identification.json");
+    let replayed = rolltank(tank.path(), &["identify", ".", "--json"]);
+    assert_eq!(replayed.out, live, "{said}");
+}
+
+#[test]
+fn a_killed_daemon_leaves_what_it_recorded_and_the_next_keeps_the_runs() {
+    let tank = LiveTank::at_speed(8.0);
+    let mut daemon = Daemon::start(&tank, &[]);
+    daemon.wait_for("latency_s=", 1);
+    // The page of the run is there at once, the campaign's follows.
+    assert!(!tank.files("results", ".html").is_empty());
+    daemon.wait_until("campaign's page", || tank.files("results", "index.html").len() == 1);
+    tank.sleep_until_in_round(RELEASED_S + 8.0);
+    daemon.kill();
+    assert_eq!(tank.files("live", ".mcap.part").len(), 1);
+
+    let mut daemon = Daemon::start(&tank, &[]);
+    daemon.wait_for("recovered", 1);
+    // The run before the kill, the one that it cut, and one of the new recording.
+    daemon.wait_for("latency_s=", 2);
+    let (status, said) = daemon.terminate();
+    assert_eq!(status.code(), Some(0), "{said}");
+    let files = tank.files("live", ".mcap");
+    assert_eq!(files.len(), 2, "{said}");
+    let recovered = Recorded::open(&files[0]).expect("it is whole");
+    assert_eq!(recovered.metadata()["exit_status"], "recovered");
+    let live = tank.text("results/identification.json");
+    let results: serde_json::Value = serde_json::from_str(&live).expect("JSON");
+    let recordings: Vec<&str> = results["runs"]
+        .as_array()
+        .expect("runs")
+        .iter()
+        .filter_map(|run| run["recording"].as_str())
+        .collect();
+    assert!(recordings.len() >= 3, "{recordings:?}");
+    assert_eq!(recordings[0], recordings[1]);
+    assert_ne!(recordings[1], recordings[2]);
+    let replayed = rolltank(tank.path(), &["identify", ".", "--json"]);
+    assert_eq!(replayed.out, live, "{said}");
+}
