@@ -380,8 +380,7 @@ fn overview(run: &IdentifiedRun) -> Overview {
     let mut overview = Overview { recording: run.recording.clone(), ..Overview::default() };
     let end_s = run.run.end_s + 8.0;
     let push = |series: &mut Series, t: f64, value: f64| {
-        series.time_s.push(t);
-        series.value.push(value);
+        (series.time_s.push(t), series.value.push(value));
     };
     for k in 0..(end_s / STEP_S) as usize {
         let t = STEP_S * k as f64;

@@ -34,7 +34,9 @@ pub(super) fn is_same(
     let gained = rival.log_evidence - before.log_evidence;
     let (most, as_well) = (explained(survey, before, favourite), explained(survey, before, rival));
     let room = SAME.max(SAME_SHARE * most).max(left.min(ALIKE_SHARE * most));
-    let explains_it = gained > ENTERS && most - as_well < room;
+    // What is far less probable is no equal, whatever scatter lets it explain.
+    let is_near = behind < SAME.max(ALIKE_SHARE * (gained + behind));
+    let explains_it = gained > ENTERS && most - as_well < room && is_near;
     (2.0 * behind < SAME && gained > 0.5 * ENTERS) || explains_it
 }
 

@@ -3,7 +3,8 @@
 //! ```text
 //! port threads -> Event -> one loop -> recorder            (keeping)
 //!                           |    \---> run finder -> identifying threads -> reporter (reporting)
-//!                           |                                                     \---> diagnosis (diagnosing)
+//!                           |                                              |
+//!                           |                                              \---> (diagnosing)
 //!                           \---> status -> /healthz /readyz /metrics
 //! ```
 //!

@@ -25,14 +25,16 @@ fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     let (w, rolling) = (i.run.natural_rad_s, i.run.rolling_rad_s);
     let inertia = i.run.inertia_kg_m2;
     // The moment of a sine tells by its growth how long ago it changed sign.
-    let growth = inertia
-        * ((w * w - rolling * rolling) * i.rate_rad_per_s.value()
-            + i.run.b1_per_s * i.acceleration_rad_per_s2.value());
-    let since_s = (rolling * i.moment_n_m.value() / growth).atan() / rolling;
-    if since_s < 0.0 {
+    let growth = (i.rate_rad_per_s * (w * w - rolling * rolling)
+        + i.acceleration_rad_per_s2 * i.run.b1_per_s)
+        * inertia;
+    let tangent = i.moment_n_m * rolling / growth;
+    let angle = tangent.value().atan();
+    if angle < 0.0 {
         return N::from(0.0);
     }
+    let since_s = tangent.chain(angle, (1.0 + tangent.value().powi(2)).recip()) / rolling;
     let (ringing, _) = (p[2] * since_s).sin_cos();
-    let size = inertia * w * w * i.run.amplitude_rad * growth.signum();
-    p[0] * (N::from(-since_s) / p[1]).exp() * ringing * size
+    let size = inertia * w * w * i.run.amplitude_rad * growth.value().signum();
+    p[0] * (-since_s / p[1]).exp() * ringing * size
 }
