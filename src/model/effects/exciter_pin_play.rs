@@ -36,5 +36,7 @@ fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     let since_s = tangent.chain(angle, (1.0 + tangent.value().powi(2)).recip()) / rolling;
     let (ringing, _) = (p[2] * since_s).sin_cos();
     let size = inertia * w * w * i.run.amplitude_rad * growth.value().signum();
-    p[0] * (-since_s / p[1]).exp() * ringing * size
+    // Gone by the time the moment turns, whatever is left of the ringing.
+    let fading = (tangent * tangent + 1.0).powf(N::from(-0.5));
+    p[0] * (-since_s / p[1]).exp() * ringing * fading * size
 }
