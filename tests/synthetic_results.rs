@@ -380,15 +380,15 @@ fn overview(run: &IdentifiedRun) -> Overview {
     let mut overview = Overview { recording: run.recording.clone(), ..Overview::default() };
     let end_s = run.run.end_s + 8.0;
     let push = |series: &mut Series, t: f64, value: f64| {
-        (series.time_s.push(t), series.value.push(value));
+        series.time_s.push(t);
+        series.value.push(value);
     };
     for k in 0..(end_s / STEP_S) as usize {
         let t = STEP_S * k as f64;
         let within = run.run.roll.time_s.iter().position(|at| (at - t).abs() < 0.5 * STEP_S);
         let heel = if t > 20.9 && t < run.run.start_s { 0.26 * (t - 20.9) / 0.5 } else { 0.0 };
-        let roll = within.map_or(heel, |at| run.run.roll.value[at]);
         let ramp = (t / 4.0).min(1.0).min(((end_s - t) / 6.0).max(0.0));
-        push(&mut overview.roll, t, roll);
+        push(&mut overview.roll, t, within.map_or(heel, |at| run.run.roll.value[at]));
         push(&mut overview.speed, t, run.speed_m_s * ramp);
     }
     overview
