@@ -171,8 +171,12 @@ impl Observation {
         let mean_rad = self.roll_rad.iter().sum::<f64>() / self.roll_rad.len() as f64;
         let end_rad = clip.level_rad - 3.0 * self.rough_noise[0];
         let read = |(t, r): (&f64, &f64)| ((r - mean_rad).abs() < end_rad).then_some((*t, *r));
-        (self.roll_time_s, self.roll_rad) =
+        let within: (Vec<f64>, Vec<f64>) =
             self.roll_time_s.iter().zip(&self.roll_rad).filter_map(read).unzip();
+        // A channel that reads its end most of the time leaves no run to speak of.
+        if 2 * within.0.len() > self.roll_rad.len() {
+            (self.roll_time_s, self.roll_rad) = within;
+        }
     }
 }
 

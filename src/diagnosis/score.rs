@@ -215,10 +215,12 @@ fn common_scores(
                 (effect.shows)(&survey.runs[r].at).then_some(slot)
             })
             .collect();
-        scored.push(Scored {
-            log_bayes_factor: log_mean_exp(&each) - none,
-            extension: extension(survey, &common[best], &strengths[best].1, slot_of),
-        });
+        let log_bayes_factor = log_mean_exp(&each) - none;
+        // An effect that drives the equation out of the numbers explains nothing.
+        if log_bayes_factor.is_finite() && !strengths[best].1.is_empty() {
+            let extension = extension(survey, &common[best], &strengths[best].1, slot_of);
+            scored.push(Scored { log_bayes_factor, extension });
+        }
         start = end;
     }
     scored
@@ -245,8 +247,9 @@ fn own_scores(
         let mut slots: Vec<Option<usize>> = vec![None; survey.runs.len()];
         let mut chosen: Option<Extension> = None;
         for r in 0..survey.runs.len() {
-            let nodes: Vec<usize> =
-                (0..own[r].len()).filter(|c| own[r][*c].effect.id == id).collect();
+            let nodes: Vec<usize> = (0..own[r].len())
+                .filter(|c| own[r][*c].effect.id == id && !strengths[r][*c].1.is_empty())
+                .collect();
             let Some(best) = nodes
                 .iter()
                 .copied()

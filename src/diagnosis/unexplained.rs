@@ -88,6 +88,10 @@ fn of(survey: &Survey, fit: &Fit, run: usize) -> Option<Unexplained> {
         return None;
     }
     let posterior = posterior(observation, state.base, times, &left, is_forced);
+    // A model that was driven out of the numbers leaves nothing that could be told.
+    if posterior.mean.len() != times.len() {
+        return None;
+    }
     let mut told = Unexplained {
         run: observation.id.clone(),
         kind: observation.at.kind,

@@ -200,7 +200,8 @@ fn causes(survey: &Survey, grown: &Grown) -> Vec<Cause> {
 fn gain(survey: &Survey, grown: &Grown) -> Option<Gain> {
     let before = gain::held_out(survey, &grown.base, &grown.noise);
     let after = gain::held_out(survey, &grown.last, &grown.noise);
-    if before.is_empty() {
+    let is_told = before.iter().chain(&after).all(|held_out| held_out.log_density.is_finite());
+    if before.is_empty() || !is_told {
         return None;
     }
     let change = |of: &dyn Fn(&HeldOut) -> f64| Change {
