@@ -27,6 +27,11 @@ pub(crate) fn number_at(message: &[u8], key: &str) -> Option<f64> {
     number.is_finite().then_some(number)
 }
 
+/// Digits of a power of ten, and bytes of a number, up to which no float overflows (the largest is
+/// 1.8e308); what is beyond is for a whole parser to refuse.
+const POWER_DIGITS: usize = 2;
+const NUMBER_BYTES: usize = 200;
+
 /// What is left of a message.
 struct Scan<'a> {
     left: &'a [u8],
@@ -57,15 +62,15 @@ impl<'a> Scan<'a> {
         if self.take(b'.').is_some() {
             self.digits()?;
         }
+        let mut is_in_range = true;
         if self.take(b'e').or_else(|| self.take(b'E')).is_some() {
             let _ = self.take(b'-').or_else(|| self.take(b'+'));
+            let power = self.left;
             self.digits()?;
+            is_in_range = power.len() - self.left.len() <= POWER_DIGITS;
         }
         let number = &start[..start.len() - self.left.len()];
-        // One too large for a float is for a whole parser to refuse.
-        let is_large = number.len() > 300 || number.iter().rev().take(3).all(u8::is_ascii_digit);
-        let has_power = number.iter().any(|byte| matches!(byte, b'e' | b'E'));
-        (!(is_large && has_power) && number.len() < 300).then_some(number)
+        (is_in_range && number.len() <= NUMBER_BYTES).then_some(number)
     }
 
     fn digits(&mut self) -> Option<()> {

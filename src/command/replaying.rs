@@ -9,6 +9,7 @@ use super::terminal::Terminal;
 use super::{Exit, Failure};
 use crate::campaign::Campaign;
 use crate::pipeline::{self, Observed, Options, Progress};
+use crate::report;
 use crate::results::Results;
 
 /// What a replay brought.
@@ -62,7 +63,10 @@ pub(super) fn replay(
         for reason in observed.left_out() {
             tracing::warn!("left out of the diagnosis: {reason}");
         }
-        pipeline::write_results(campaign, &results, observed.diagnosed(campaign).as_ref(), dir)?;
+        let diagnosis = observed.diagnosed(campaign);
+        pipeline::write_results(campaign, &results, diagnosis.as_ref(), dir)?;
+        report::write_diagnosis(campaign, diagnosis.as_ref(), dir)
+            .map_err(pipeline::WriteError::from)?;
     }
     for sentence in pipeline::without_runs(&results) {
         tracing::warn!("{sentence}");

@@ -11,7 +11,7 @@ use crate::model::{Acts, Layer};
 /// Difference of misfits below which two effects cannot be told apart.
 pub(super) const SAME: f64 = 12.0;
 /// The same as a share of what the effect explains.
-pub(super) const SAME_SHARE: f64 = 0.01;
+const SAME_SHARE: f64 = 0.01;
 /// The share below which two effects are alike where as much again is left unexplained: a residual
 /// wave fitted beside amplitude-dependent inertia in the measured decay of KVLCC2 sets cubic
 /// restoring, its equal in any decay, back by 6.5 %.
@@ -70,7 +70,7 @@ pub(super) fn is_approximate(id: &str) -> bool {
 
 /// The fall of the misfit from one model to the next when no run may leave its law: what scatter
 /// could hide is still explained.
-pub(super) fn explained(survey: &Survey, before: &Settled, after: &Settled) -> f64 {
+fn explained(survey: &Survey, before: &Settled, after: &Settled) -> f64 {
     let tight = scatters(survey)[0];
     let least =
         |settled: &Settled| solve(survey, &settled.fit, &settled.summaries, tight).least_misfit;

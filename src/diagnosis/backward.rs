@@ -1,6 +1,6 @@
 //! The grown model looked back on: effects that are not missed leave, others may take their place.
 
-use super::alike::{SAME, contains, explained, is_same};
+use super::alike::{SAME, contains, is_same};
 use super::growth::{ENTERS, Entered, excess, leftovers};
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score};
@@ -31,7 +31,6 @@ pub(super) fn check_backward(
             entered.remove(e);
             continue;
         }
-        let explained = explained(survey, &without, &current);
         let rivals: Vec<Scored> = score(survey, &without.fit, noise)
             .into_iter()
             .filter(|s| {
@@ -42,7 +41,6 @@ pub(super) fn check_backward(
         let tried = fit_all(survey, &without, &rivals, noise);
         let left = excess(&leftovers(survey, &current.fit));
         entered[e].log_bayes_factor = missed;
-        entered[e].explained = explained;
         entered[e].equivalent_to = tried
             .iter()
             .filter(|one| is_newest_plausible(survey, &one.settled))

@@ -1,6 +1,6 @@
 //! The model grows by one effect at a time until nothing more is to be named.
 
-use super::alike::{contains, explained, is_approximate, is_same};
+use super::alike::{contains, is_approximate, is_same};
 use super::backward::check_backward;
 use super::leftover::{self, Leftover};
 use super::run_fit::ChannelNoise;
@@ -32,8 +32,6 @@ const FITTED: usize = 6;
 pub(super) struct Entered {
     pub(super) id: &'static str,
     pub(super) log_bayes_factor: f64,
-    /// What it explains: the fall of the misfit.
-    pub(super) explained: f64,
     /// What it removes of what is left beyond the noise, in units of its variance.
     pub(super) removed: f64,
     pub(super) equivalent_to: Vec<&'static str>,
@@ -189,7 +187,6 @@ fn winner(
     if !explains_enough(&before, &after) {
         return None;
     }
-    let explained = explained(survey, current, &best.settled);
     let left = excess(&after);
     let removed = excess(&before) - left;
     let newest = best.settled.fit.extensions.last();
@@ -208,7 +205,7 @@ fn winner(
         .filter(|one| is_same(survey, current, &best.settled, &one.settled, left))
         .map(|one| one.id)
         .collect();
-    let entered = Entered { id: best.id, log_bayes_factor, explained, removed, equivalent_to };
+    let entered = Entered { id: best.id, log_bayes_factor, removed, equivalent_to };
     plausible.into_iter().next().map(|best| (best.settled, entered))
 }
 

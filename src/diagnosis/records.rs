@@ -20,19 +20,31 @@ struct Found {
     recurs: Option<Recurs>,
 }
 
-/// The causes that the records show, where the runs that can show one do.
-pub(super) fn causes(survey: &Survey) -> Vec<Cause> {
-    found(survey).into_iter().map(|found| found.cause).collect()
-}
+/// What the records show, where the runs that can show it do.
+pub(super) struct Shown(Vec<Found>);
 
-/// Whether a line that the records show is what is left at a frequency [rad/s] of a run.
-pub(super) fn is_told(survey: &Survey, run: &str, frequency_rad_s: f64) -> bool {
-    let Some(run) = survey.runs.iter().find(|observed| observed.id == run) else { return false };
-    let hz = frequency_rad_s / std::f64::consts::TAU;
-    let resolution_hz = 1.5 / run.at.span_s;
-    let lines = found(survey).into_iter().filter_map(|found| found.recurs);
-    let mut expected = lines.map(|line| line.frequency_hz(run.at.froude));
-    expected.any(|line_hz| (line_hz - hz).abs() < resolution_hz + ONE_LINE_SHARE * hz)
+impl Shown {
+    /// Of all runs together.
+    pub(super) fn of(survey: &Survey) -> Self {
+        Self(found(survey))
+    }
+
+    /// Whether a line that the records show is what is left at a frequency [rad/s] of a run.
+    pub(super) fn tells(&self, survey: &Survey, run: &str, frequency_rad_s: f64) -> bool {
+        let Some(run) = survey.runs.iter().find(|observed| observed.id == run) else {
+            return false;
+        };
+        let hz = frequency_rad_s / std::f64::consts::TAU;
+        let resolution_hz = 1.5 / run.at.span_s;
+        let lines = self.0.iter().filter_map(|found| found.recurs);
+        let mut expected = lines.map(|line| line.frequency_hz(run.at.froude));
+        expected.any(|line_hz| (line_hz - hz).abs() < resolution_hz + ONE_LINE_SHARE * hz)
+    }
+
+    /// The causes.
+    pub(super) fn causes(self) -> impl Iterator<Item = Cause> {
+        self.0.into_iter().map(|found| found.cause)
+    }
 }
 
 fn found(survey: &Survey) -> Vec<Found> {

@@ -149,37 +149,28 @@ fn posterior(
     let w = if is_forced { observation.at.rolling_rad_s } else { base.natural_rad_s };
     let tau: Vec<f64> =
         evened(times.iter().map(|t| t - times[0]).collect()).iter().map(|t| w * t).collect();
-    let hyperprior = Hyperprior::ScaleFree { roll_scale_rad: rms(left.iter().copied()) };
-    let quadrature = Quadrature::BAND;
     if is_forced {
         let prior = |intensity: f64| Drifting { intensity };
-        let free = &[0, 1];
-        MomentProblem {
-            tau: &tau,
-            record: left,
-            free_components: free,
-            prior,
-            hyperprior,
-            quadrature,
-        }
-        .solve::<2, Drifting>()
+        problem(&tau, left, &[0, 1], prior).solve::<2, Drifting>()
     } else {
         // The law's own damping at the size of the roll is no part of what is sought.
         let amplitude_rad = observation.at.amplitude_rad;
         let cubic = 0.75 * base.b3_s * (w * amplitude_rad).powi(2);
         let damping = ((base.b1_per_s + 0.5 * cubic) / w).max(0.0);
         let prior = |walk: f64| Damped { damping, walk, moment_noise: 0.0 };
-        let free = &[0, 1, 2];
-        MomentProblem {
-            tau: &tau,
-            record: left,
-            free_components: free,
-            prior,
-            hyperprior,
-            quadrature,
-        }
-        .solve::<3, Damped>()
+        problem(&tau, left, &[0, 1, 2], prior).solve::<3, Damped>()
     }
+}
+
+fn problem<'a, F>(
+    tau: &'a [f64],
+    record: &'a [f64],
+    free_components: &'a [usize],
+    prior: F,
+) -> MomentProblem<'a, F> {
+    let hyperprior = Hyperprior::ScaleFree { roll_scale_rad: rms(record.iter().copied()) };
+    let quadrature = Quadrature::BAND;
+    MomentProblem { tau, record, free_components, prior, hyperprior, quadrature }
 }
 
 fn rms(values: impl Iterator<Item = f64>) -> f64 {

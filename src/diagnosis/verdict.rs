@@ -6,7 +6,7 @@ use super::layout::Layout;
 use super::leftover::Leftover;
 use super::next_run::{NextRun, next_run};
 use super::observation::Observation;
-use super::records;
+use super::records::Shown;
 use super::settle::Settled;
 use super::survey::{N_LAW, Survey};
 use super::unexplained::{Unexplained, unexplained};
@@ -123,9 +123,10 @@ pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
     let left_after = leftovers(&survey, &grown.last.fit);
     let mut causes = causes(&survey, &grown);
     let mut suspects = Vec::new();
+    let shown = Shown::of(&survey);
     let untold_left: Vec<Leftover> = left_after
         .iter()
-        .filter(|left| !records::is_told(&survey, &left.run, left.frequency_rad_s))
+        .filter(|left| !shown.tells(&survey, &left.run, left.frequency_rad_s))
         .cloned()
         .collect();
     let is_left = untold_left.iter().any(Leftover::is_sure);
@@ -134,7 +135,7 @@ pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
         suspects = causes.iter().map(|cause| cause.effect).collect();
         causes.clear();
     }
-    causes.extend(records::causes(&survey));
+    causes.extend(shown.causes());
     let verdict = if untold {
         Verdict::Unexplained
     } else if causes.iter().any(|cause| !cause.equivalent_to.is_empty()) {

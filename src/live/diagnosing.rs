@@ -63,13 +63,10 @@ impl Diagnoser {
 fn answer(campaign: &Campaign, known: &Mutex<Known>, asked: &Receiver<()>) {
     while asked.recv().is_ok() {
         diagnose(campaign, known);
-        if let Some(diagnosis) = lock(known).diagnosis.clone() {
-            write(campaign, &diagnosis, &pipeline::results_folder(campaign));
-        }
     }
 }
 
-/// Diagnoses what was heard, if that is more than the newest diagnosis knew.
+/// Diagnoses what was heard, if that is more than the newest diagnosis knew, and writes its page.
 fn diagnose(campaign: &Campaign, known: &Mutex<Known>) {
     let (observed, n_heard) = {
         let known = lock(known);
@@ -79,10 +76,12 @@ fn diagnose(campaign: &Campaign, known: &Mutex<Known>) {
         }
         (known.observed.clone(), n_heard)
     };
-    let diagnosis = observed.diagnosed(campaign).map(Arc::new);
+    let Some(diagnosis) = observed.diagnosed(campaign).map(Arc::new) else { return };
+    // One writer at a time, and never an older diagnosis over a newer one.
     let mut known = lock(known);
     if n_heard > known.n_diagnosed {
-        (known.n_diagnosed, known.diagnosis) = (n_heard, diagnosis);
+        write(campaign, &diagnosis, &pipeline::results_folder(campaign));
+        (known.n_diagnosed, known.diagnosis) = (n_heard, Some(diagnosis));
     }
 }
 

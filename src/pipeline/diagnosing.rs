@@ -1,5 +1,7 @@
 //! Gathering the runs of a campaign for the diagnosis while they are identified.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
 use crate::campaign::Campaign;
 use crate::diagnosis::{self, Diagnosis, Observation};
 use crate::results::IdentifiedRun;
@@ -46,8 +48,20 @@ impl Observed {
     }
 
     /// What the runs say; none without runs.
+    ///
+    /// A fault of the diagnosis is told and costs nothing else: neither report nor daemon may end
+    /// because of it.
     pub fn diagnosed(self, campaign: &Campaign) -> Option<Diagnosis> {
-        diagnosis::diagnose(self.observations, &campaign.tank)
+        let diagnosed = catch_unwind(AssertUnwindSafe(|| {
+            diagnosis::diagnose(self.observations, &campaign.tank)
+        }));
+        diagnosed.unwrap_or_else(|_| {
+            tracing::error!(
+                "the diagnosis failed, and nothing else did; hint: send the developers the \
+                 campaign folder, and diagnose fewer recordings meanwhile"
+            );
+            None
+        })
     }
 
     /// Runs heard so far.

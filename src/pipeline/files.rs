@@ -68,7 +68,8 @@ pub fn write_run_page(
 
 /// Writes everything but the pages of single runs; returns the path of the campaign's page.
 ///
-/// Pages of runs that are no more are removed: in the campaign's own results folder all of them, in
+/// The diagnosis is only led to; [`report::write_diagnosis`] writes it. Pages of runs that are no
+/// more are removed: in the campaign's own results folder all of them, in
 /// another folder those of the report that was there before.
 pub fn write_results(
     campaign: &Campaign,
@@ -80,9 +81,6 @@ pub fn write_results(
     report::csv_tables(campaign, results, dir)?;
     write_text(dir, IDENTIFICATION, &report::identification_json(campaign, results))?;
     write_text(dir, "identification.schema.json", report::IDENTIFICATION_SCHEMA)?;
-    if diagnosis.is_some() {
-        report::write_diagnosis(campaign, diagnosis, dir)?;
-    }
     catalogue::write(&dir.join(CATALOGUE), campaign, results)?;
     Ok(report::write_campaign(campaign, results, diagnosis, dir)?)
 }
