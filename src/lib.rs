@@ -16,6 +16,10 @@ pub mod inverse;
 
 pub mod results;
 
+pub mod procedure;
+
+pub mod progress;
+
 pub mod diagnosis;
 
 pub mod tank;

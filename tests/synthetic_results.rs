@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use replay::Columns;
-use rolltank::campaign::{Campaign, Live, Recording, Tank};
+use rolltank::campaign::{Campaign, Live, Plan, Recording, Tank};
 use rolltank::hull::{Hull, Water};
 use rolltank::inverse::estimate::Estimate;
 use rolltank::inverse::identification::{
@@ -15,7 +15,7 @@ use rolltank::inverse::identification::{
     FroudeLaw, HalfCycle, Identification, Method, MomentHistory, Resimulation, Trace,
 };
 
-use rolltank::results::{IdentifiedRun, Overview, RejectedStretch, Results};
+use rolltank::results::{IdentifiedRun, Overview, RejectedStretch, Results, Sampling};
 use rolltank::roll::exciting_moment::{Arm, Exciter};
 use rolltank::run::{Run, RunEnd, RunKind, Series, Still};
 
@@ -67,6 +67,7 @@ pub(crate) fn campaign(name: &str) -> Campaign {
         recordings,
         model: None,
         live: Live::default(),
+        plan: Plan::default(),
     }
 }
 
@@ -179,6 +180,7 @@ fn identified(
         condition: condition.to_owned(),
         speed_m_s: froude * 4.952,
         froude,
+        sampling: Sampling::of(&run),
         run,
         identification,
     }
@@ -187,6 +189,8 @@ fn identified(
 /// The run as the finder would hand it over.
 fn found(truth: &Truth, froude: f64, roll: Series, moment_n_m: &[f64]) -> Run {
     let forced = truth.forced();
+    let force = Some(0.02);
+    let still = Still { start_s: 4.0, end_s: 20.9, roll_rad: 0.001, roll_sd_rad: 0.0, force };
     let force_n = moment_n_m.iter().map(|moment| moment / 0.43).collect();
     Run {
         kind: if forced { RunKind::Forced } else { RunKind::Decay },
@@ -200,7 +204,7 @@ fn found(truth: &Truth, froude: f64, roll: Series, moment_n_m: &[f64]) -> Run {
             Series::default()
         },
         roll,
-        still: Some(Still { start_s: 4.0, end_s: 20.9, roll_rad: 0.001, force: Some(0.02) }),
+        still: Some(still),
         excitation_rad_s: forced.then_some(truth.excitation_rad_s),
     }
 }

@@ -54,6 +54,16 @@ pub enum RunKind {
     Forced,
 }
 
+impl RunKind {
+    /// The kind as files and contracts write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Decay => "decay",
+            Self::Forced => "forced",
+        }
+    }
+}
+
 /// Why the usable stretch of a run ends where it does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RunEnd {
@@ -84,6 +94,8 @@ pub struct Still {
     pub end_s: f64,
     /// Mean roll [rad].
     pub roll_rad: f64,
+    /// Standard deviation of the roll about it [rad], noise included.
+    pub roll_sd_rad: f64,
     /// Mean rod force [N] or moment [N m], where one is recorded.
     pub force: Option<f64>,
 }
