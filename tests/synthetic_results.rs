@@ -14,7 +14,6 @@ use rolltank::inverse::identification::{
     Beliefs, Chain, CurvePoint, DampingFit, EquivalentDamping, ForcedResponse, FormBelief,
     FroudeLaw, HalfCycle, Identification, Method, MomentHistory, Resimulation, Trace,
 };
-
 use rolltank::results::{IdentifiedRun, Overview, RejectedStretch, Results, Sampling};
 use rolltank::roll::exciting_moment::{Arm, Exciter};
 use rolltank::run::{Run, RunEnd, RunKind, Series, Still};
@@ -191,18 +190,15 @@ fn found(truth: &Truth, froude: f64, roll: Series, moment_n_m: &[f64]) -> Run {
     let forced = truth.forced();
     let force = Some(0.02);
     let still = Still { start_s: 4.0, end_s: 20.9, roll_rad: 0.001, roll_sd_rad: 0.0, force };
-    let force_n = moment_n_m.iter().map(|moment| moment / 0.43).collect();
+    let n = if forced { moment_n_m.len() } else { 0 };
+    let force_n = moment_n_m[..n].iter().map(|moment| moment / 0.43).collect();
     Run {
         kind: if forced { RunKind::Forced } else { RunKind::Decay },
         start_s: roll.time_s[0],
         end_s: roll.time_s[roll.time_s.len() - 1],
         end: if forced { RunEnd::ExcitationChanged } else { RunEnd::LostInNoise },
         speed_m_s: Some(froude * 4.952),
-        drive: if forced {
-            Series { time_s: roll.time_s.clone(), value: force_n }
-        } else {
-            Series::default()
-        },
+        drive: Series { time_s: roll.time_s[..n].to_vec(), value: force_n },
         roll,
         still: Some(still),
         excitation_rad_s: forced.then_some(truth.excitation_rad_s),
