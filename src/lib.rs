@@ -8,6 +8,8 @@ pub mod roll;
 
 pub mod run;
 
+pub mod settling;
+
 pub mod model;
 
 pub mod campaign;

@@ -61,15 +61,11 @@ impl RowProgress {
     /// What is asked for, in words: "decay from 15 deg at Fr 0.200 (0.99 m/s), bare hull".
     pub fn words(&self) -> String {
         let Self { condition, froude, speed_m_s, kind, .. } = self;
-        let mut what = (*kind).to_owned();
         let from = if self.frequency_rad_s.is_some() { "to" } else { "from" };
-        if let Some(amplitude_deg) = self.amplitude_deg {
-            what += &format!(" {from} {amplitude_deg:.1} deg");
-        }
-        if let Some(frequency_rad_s) = self.frequency_rad_s {
-            what += &format!(" with {frequency_rad_s:.3} rad/s");
-        }
-        format!("{what} at Fr {froude:.3} ({speed_m_s:.2} m/s), {condition}")
+        let amplitude = self.amplitude_deg.map(|deg| format!(" {from} {deg:.1} deg"));
+        let frequency = self.frequency_rad_s.map(|rad_s| format!(" with {rad_s:.3} rad/s"));
+        let what = [amplitude, frequency].into_iter().flatten().collect::<String>();
+        format!("{kind}{what} at Fr {froude:.3} ({speed_m_s:.2} m/s), {condition}")
     }
 }
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The layers of `src`, top first; each may name those below it.
-const LAYERS: [&str; 19] = [
+const LAYERS: [&str; 20] = [
     "main",
     "command",
     "bench",
@@ -22,6 +22,7 @@ const LAYERS: [&str; 19] = [
     "inverse",
     "campaign",
     "model",
+    "settling",
     "run",
     "roll",
     "hull",

@@ -24,12 +24,15 @@ fn assert_answered(run: &IdentifiedRun, id: &str, met: Option<bool>, value: Opti
     assert_eq!(answer.met, met, "{answer:?}");
     match value {
         None => assert_eq!(answer.value, None, "{answer:?}"),
-        Some(value) => assert!((answer.value.unwrap() - value).abs() <= 0.02 * value, "{answer:?}"),
+        Some(value) => {
+            let found = answer.value.expect("a value");
+            assert!((found - value).abs() <= 0.02 * value, "{answer:?}");
+        }
     }
 }
 
-fn still(duration_s: f64, roll_sd_rad: f64) -> Option<Still> {
-    Some(Still { start_s: 10.0, end_s: 10.0 + duration_s, roll_rad: 0.0, roll_sd_rad, force: None })
+fn still(duration_s: f64, roll_sd_rad: f64) -> Still {
+    Still { start_s: 10.0, end_s: 10.0 + duration_s, roll_rad: 0.0, roll_sd_rad, force: None }
 }
 
 #[test]
@@ -46,9 +49,9 @@ fn a_decay_is_asked_for_rest_peaks_small_cycles_its_end_and_its_sampling() {
     ];
     assert_eq!(asked, of_a_decay);
 
-    run.run.still = still(4.0, 0.0);
+    run.run.still = Some(still(4.0, 0.0));
     assert_answered(&run, "rest-before-release", Some(true), Some(4.0));
-    run.run.still = still(0.5, 0.0);
+    run.run.still = Some(still(0.5, 0.0));
     assert_answered(&run, "rest-before-release", Some(false), Some(0.5));
     run.run.still = None;
     assert_answered(&run, "rest-before-release", Some(false), None);
@@ -81,19 +84,19 @@ fn the_roll_left_by_the_run_before_is_told_apart_from_the_noise() {
     let mut run = first(RunKind::Decay);
     let noise_rad = run.identification.roll_noise_rad.mean;
     let roll_deg = 0.3_f64;
-    run.run.still = still(8.0, noise_rad);
+    run.run.still = Some(still(8.0, noise_rad));
     assert_answered(&run, "settled", Some(true), Some(0.0));
     let of_a_sine_rad = roll_deg.to_radians() / 2.0_f64.sqrt();
-    run.run.still = still(8.0, noise_rad.hypot(of_a_sine_rad));
+    run.run.still = Some(still(8.0, noise_rad.hypot(of_a_sine_rad)));
     assert_answered(&run, "settled", Some(false), Some(roll_deg));
 }
 
 #[test]
 fn a_forced_run_is_asked_for_calm_for_periods_for_dense_sampling() {
     let mut run = first(RunKind::Forced);
-    run.run.still = still(20.0, 0.0);
+    run.run.still = Some(still(20.0, 0.0));
     assert_answered(&run, "calm-before-forced", Some(true), Some(20.0));
-    run.run.still = still(12.0, 0.0);
+    run.run.still = Some(still(12.0, 0.0));
     assert_answered(&run, "calm-before-forced", Some(false), Some(12.0));
     let frequency_rad_s = run.run.excitation_rad_s.expect("it repeats");
     run.run.end_s = run.run.start_s + 31.0 * std::f64::consts::TAU / frequency_rad_s;

@@ -5,6 +5,7 @@ mod a_decay_at_live_instruments_is_reported;
 mod a_pulled_cable_or_a_killed_daemon_costs_no_more_than_it_must;
 mod architecture;
 mod bad_input;
+mod calm_water_is_foretold;
 mod campaign_folder;
 mod decays_are_identified;
 mod dense_posterior;

@@ -28,11 +28,11 @@ pub struct PlannedRuns {
     pub line: Option<usize>,
 }
 
-/// Reads the plan; none when a row cannot be told from its hull's speed, which is a mistake then.
+/// Reads the plan; a row with a mistake is left out.
 pub(super) fn read(root: &Section<'_>, folder: &Path, hull: Option<&Hull>, water: &Water) -> Plan {
     let Some(name) = root.text_or_tables("plan") else {
         let file = super::FILE_NAME.to_owned();
-        return Plan { file, rows: rows(root.sections("plan"), hull, water) };
+        return Plan { file, rows: rows(&root.sections("plan"), hull, water) };
     };
     let path = folder.join(name);
     let written = match plan_table::read(&path) {
@@ -45,13 +45,13 @@ pub(super) fn read(root: &Section<'_>, folder: &Path, hull: Option<&Hull>, water
     };
     let source = Source::new(path.display().to_string(), &written);
     let rows = source.parse().map_or_else(Vec::new, |tree| {
-        rows(source.root(tree.get_ref()).sections("plan"), hull, water)
+        rows(&source.root(tree.get_ref()).sections("plan"), hull, water)
     });
     source.into_mistakes().into_iter().for_each(|mistake| root.add(mistake));
     Plan { file: name.to_owned(), rows }
 }
 
-fn rows(sections: Vec<Section<'_>>, hull: Option<&Hull>, water: &Water) -> Vec<PlannedRuns> {
+fn rows(sections: &[Section<'_>], hull: Option<&Hull>, water: &Water) -> Vec<PlannedRuns> {
     let read = |section: &Section<'_>| {
         let row = row(section, hull, water);
         section.close();
@@ -73,22 +73,15 @@ fn row(section: &Section<'_>, hull: Option<&Hull>, water: &Water) -> Option<Plan
         froude.or_else(|| Some(hull?.froude(speed_m_s?, water)))
     });
     let kind = kind(section);
-    let frequency_rad_s = match kind {
-        Some(RunKind::Forced) => either(section, "frequency_rad_s", "period_s", |section| {
+    let frequency_rad_s = if kind == Some(RunKind::Forced) {
+        either(section, "frequency_rad_s", "period_s", |section| {
             let period_s = section.number("period_s", &POSITIVE);
             let frequency_rad_s = section.number("frequency_rad_s", &POSITIVE);
             frequency_rad_s.or_else(|| Some(std::f64::consts::TAU / period_s?))
-        }),
-        _ => {
-            for key in ["frequency_rad_s", "period_s"] {
-                section.leave(key);
-                if kind.is_some() && section.holds(key) {
-                    let message = format!("`{key}` is given, but a decay has no excitation");
-                    section.mistake(key, message, "leave it out, or write kind = \"forced\"");
-                }
-            }
-            None
-        }
+        })
+    } else {
+        refuse_frequency(section, kind);
+        None
     };
     let kind = kind?;
     if kind == RunKind::Forced && frequency_rad_s.is_none() {
@@ -96,6 +89,16 @@ fn row(section: &Section<'_>, hull: Option<&Hull>, water: &Water) -> Option<Plan
     }
     let (froude, line) = (froude?, section.own_line());
     Some(PlannedRuns { condition, froude, kind, amplitude_rad, frequency_rad_s, repeats, line })
+}
+
+fn refuse_frequency(section: &Section<'_>, kind: Option<RunKind>) {
+    for key in ["frequency_rad_s", "period_s"] {
+        section.leave(key);
+        if kind.is_some() && section.holds(key) {
+            let message = format!("`{key}` is given, but a decay has no excitation");
+            section.mistake(key, message, "leave it out, or write kind = \"forced\"");
+        }
+    }
 }
 
 fn kind(section: &Section<'_>) -> Option<RunKind> {

@@ -35,6 +35,7 @@ mod usable_end;
 
 pub use finder::RunFinder;
 pub use limits::Limits;
+pub(crate) use noise::SampleNoise;
 
 /// Values of one channel with their times, both of the same length.
 #[derive(Debug, Clone, Default, PartialEq)]

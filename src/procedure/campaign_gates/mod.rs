@@ -8,9 +8,11 @@ use serde::Serialize;
 use super::gate::Answer;
 use crate::results::{IdentifiedRun, Results, by_speed};
 
+/// Answers from the runs of one condition at one speed.
+type CampaignGate = fn(&[&IdentifiedRun]) -> Option<Answer>;
+
 /// Every gate; one that these runs have nothing to do with gives no answer.
-const GATES: [fn(&[&IdentifiedRun]) -> Option<Answer>; 2] =
-    [repeats::answer, frequency_ladder::answer];
+const GATES: [CampaignGate; 2] = [repeats::answer, frequency_ladder::answer];
 
 /// What the procedure says of the runs of one condition at one speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
