@@ -8,6 +8,8 @@ pub mod roll;
 
 pub mod run;
 
+pub mod settling;
+
 pub mod model;
 
 pub mod campaign;
@@ -15,6 +17,10 @@ pub mod campaign;
 pub mod inverse;
 
 pub mod results;
+
+pub mod procedure;
+
+pub mod progress;
 
 pub mod diagnosis;
 

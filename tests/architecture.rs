@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The layers of `src`, top first; each may name those below it.
-const LAYERS: [&str; 17] = [
+const LAYERS: [&str; 20] = [
     "main",
     "command",
     "bench",
@@ -16,10 +16,13 @@ const LAYERS: [&str; 17] = [
     "reference",
     "tank",
     "diagnosis",
+    "progress",
+    "procedure",
     "results",
     "inverse",
     "campaign",
     "model",
+    "settling",
     "run",
     "roll",
     "hull",
@@ -51,7 +54,7 @@ const OWNERS: [(&str, &[&str]); 24] = [
             "devices/src/setup",
         ],
     ),
-    ("csv", &["src/report", "replay/src"]),
+    ("csv", &["src/campaign/plan_table", "src/report", "replay/src"]),
     ("mcap", &["replay/src"]),
     ("tokio", &["src/live"]),
     ("axum", &["src/live"]),

@@ -8,7 +8,7 @@ use replay::Columns;
 
 use super::mistake::Mistake;
 use super::tree::{Section, Source};
-use super::{Campaign, LIVE_FOLDER, Recording, columns, live, particulars, recordings};
+use super::{Campaign, LIVE_FOLDER, Recording, columns, live, particulars, plan, recordings};
 use crate::model::model_file::ModelFile;
 
 /// Name of the campaign file in its folder.
@@ -42,6 +42,7 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
     let known = columns.clone().unwrap_or_default();
     let live = live::read(root, folder);
     let is_live = !live.setups.is_empty();
+    let plan = plan::read(root, folder, hull.as_ref(), &water);
     let recordings = if root.holds("recording") {
         let named = |quantity: Quantity| root.holds_below("columns", quantity.name());
         let mut listed = recordings::read(root.sections("recording"), folder, &named);
@@ -52,6 +53,7 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
     } else {
         root.leave("recording");
         let mut all = found(source, folder, folder);
+        all.retain(|recording| recording.name != plan.file);
         // The daemon adds to these, and their runs are numbered behind those of all others.
         all.sort_by_key(recordings::is_live);
         all
@@ -61,8 +63,6 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
             instruments in [[device]]";
         source.add(None, "the folder holds no recording".to_owned(), Some(hint.to_owned()));
     }
-    // The plan of the day takes no part in reading recordings.
-    root.leave("plan");
     root.close();
     check_columns(root, columns.as_ref(), &recordings);
     check_exciter(root, &known);
@@ -78,6 +78,7 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
         recordings,
         model,
         live,
+        plan,
     })
 }
 

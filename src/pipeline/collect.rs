@@ -8,7 +8,7 @@ use crate::inverse;
 use crate::inverse::Setting;
 use crate::inverse::froude_law::Point;
 use crate::inverse::identification::FroudeLaw;
-use crate::results::{IdentifiedRun, Overview, RejectedStretch, Results};
+use crate::results::{IdentifiedRun, Overview, RejectedStretch, Results, Sampling};
 use crate::run::{Rejection, RunKind};
 
 /// The collecting end of the pipeline.
@@ -60,6 +60,7 @@ impl<'c> Collector<'c> {
             speed_m_s,
             // The damping of a model towed astern is reported at the size of its speed.
             froude: self.campaign.hull.froude(speed_m_s.abs(), &self.campaign.water),
+            sampling: Sampling::of(&run),
             run,
             identification,
         };
@@ -99,7 +100,7 @@ impl<'c> Collector<'c> {
     }
 
     pub(super) fn into_results(mut self) -> Results {
-        self.results.froude_laws = froude_laws(&self.results.runs);
+        self.results.froude_laws = froude_laws(&self.results);
         self.results
     }
 }
@@ -110,23 +111,19 @@ pub(super) fn joined(earlier: &Results, later: &Results) -> Results {
     all.runs.extend_from_slice(&later.runs);
     all.rejected.extend_from_slice(&later.rejected);
     all.overviews.extend_from_slice(&later.overviews);
-    all.froude_laws = froude_laws(&all.runs);
+    all.froude_laws = froude_laws(&all);
     all
 }
 
 /// One law per condition, in the order in which the conditions were first met.
 ///
 /// Decays carry the law, as in Table 2 of the paper; forced runs only where a condition has none.
-fn froude_laws(runs: &[IdentifiedRun]) -> Vec<FroudeLaw> {
-    let mut conditions: Vec<&str> = Vec::new();
-    for run in runs {
-        if !conditions.contains(&run.condition.as_str()) {
-            conditions.push(&run.condition);
-        }
-    }
+fn froude_laws(results: &Results) -> Vec<FroudeLaw> {
     let law = |condition: &str| {
         let of_kind = |kind: RunKind| -> Vec<Point> {
-            runs.iter()
+            results
+                .runs
+                .iter()
                 .filter(|run| run.condition == condition && run.run.kind == kind)
                 .map(|run| {
                     let damping = &run.identification.damping;
@@ -138,5 +135,5 @@ fn froude_laws(runs: &[IdentifiedRun]) -> Vec<FroudeLaw> {
         let points = if decays.is_empty() { of_kind(RunKind::Forced) } else { decays };
         inverse::froude_law(condition, &points)
     };
-    conditions.into_iter().filter_map(law).collect()
+    results.conditions().into_iter().filter_map(law).collect()
 }

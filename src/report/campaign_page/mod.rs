@@ -9,12 +9,14 @@ mod equivalent_damping;
 mod forced_damping;
 mod forced_runs;
 mod froude_law;
+mod gates;
 mod groups;
 mod inertia;
 mod law_gaps;
 mod losses;
 mod particulars;
 mod peak_moment;
+mod plan;
 mod recordings_to_judge;
 mod rejected;
 mod runs;
@@ -28,7 +30,7 @@ use crate::inverse::identification::ForcedResponse;
 use crate::results::{IdentifiedRun, Results};
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&CampaignPage) -> Option<Markup>; 16] = [
+const PARTS: [fn(&CampaignPage) -> Option<Markup>; 18] = [
     at_speeds::part,
     diagnosis::part,
     law_gaps::part,
@@ -42,6 +44,8 @@ const PARTS: [fn(&CampaignPage) -> Option<Markup>; 16] = [
     forced_damping::part,
     inertia::part,
     peak_moment::part,
+    plan::part,
+    gates::part,
     rejected::part,
     recordings_to_judge::part,
     losses::part,
