@@ -8,6 +8,8 @@ pub mod roll;
 
 pub mod run;
 
+pub mod judgement;
+
 pub mod model;
 
 pub mod campaign;
@@ -27,6 +29,8 @@ pub mod catalogue;
 pub mod report;
 
 pub mod pipeline;
+
+pub mod page;
 
 pub mod live;
 

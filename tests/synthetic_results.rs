@@ -15,6 +15,7 @@ use rolltank::inverse::identification::{
     FroudeLaw, HalfCycle, Identification, Method, MomentHistory, Resimulation, Trace,
 };
 
+use rolltank::judgement::Judgements;
 use rolltank::results::{IdentifiedRun, Overview, RejectedStretch, Results};
 use rolltank::roll::exciting_moment::{Arm, Exciter};
 use rolltank::run::{Run, RunEnd, RunKind, Series, Still};
@@ -66,6 +67,7 @@ pub(crate) fn campaign(name: &str) -> Campaign {
         columns: Columns::default(),
         recordings,
         model: None,
+        judgements: Judgements::default(),
         live: Live::default(),
     }
 }
@@ -98,6 +100,7 @@ fn simulated() -> Results {
                 start_s: run.run.end_s + 1.0,
                 end_s: run.run.end_s + 4.0,
                 reason: "the carriage brakes: speed falls by 0.8 m/s, the limit is 0.02".to_owned(),
+                run: None,
             });
             results.runs.push(run);
             for (kind, ratio) in [0.74, 0.9, 1.0, 1.1].into_iter().enumerate() {

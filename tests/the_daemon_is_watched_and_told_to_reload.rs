@@ -10,14 +10,6 @@ use rolltank::command::CommandLine;
 
 use super::live_tank::{Daemon, LiveTank};
 
-/// The address that the daemon's log names.
-fn address(daemon: &mut Daemon) -> String {
-    daemon.wait_for("serving /healthz", 1);
-    let said = daemon.said();
-    let after = said.split("address=").nth(1).expect("the address is told");
-    after.split_whitespace().next().expect("an address").trim_matches('"').to_owned()
-}
-
 /// Status line, headers and body of the answer to a request.
 fn get(address: &str, path: &str, token: Option<&str>) -> String {
     let mut stream = TcpStream::connect(address).expect("the daemon listens");
@@ -37,7 +29,7 @@ fn is_ok(answer: &str) -> bool {
 fn health_readiness_and_gauges_follow_the_instruments() {
     let tank = LiveTank::at_speed(1.0);
     let mut daemon = Daemon::start(&tank, &[]);
-    let address = address(&mut daemon);
+    let address = daemon.address();
     assert!(is_ok(&get(&address, "/healthz", None)));
     daemon.wait_until("ready", || is_ok(&get(&address, "/readyz", None)));
     let gauges = get(&address, "/metrics", None);
@@ -70,7 +62,7 @@ fn a_token_is_asked_for_where_one_is_set_and_must_be_beyond_this_machine() {
     let token = tank.path().join("token");
     std::fs::write(&token, "open sesame\n").unwrap();
     let mut daemon = Daemon::start(&tank, &["--token-file", "token"]);
-    let address = address(&mut daemon);
+    let address = daemon.address();
     for wrong in [None, Some("open"), Some("open sesame!")] {
         assert!(get(&address, "/healthz", wrong).starts_with("HTTP/1.1 401"), "{wrong:?}");
     }
@@ -114,7 +106,7 @@ fn a_zero_is_taken_from_the_daemon_itself_and_in_force_from_the_next_rest_on() {
     // The model rests for the first six seconds of a round.
     let tank = LiveTank::at_speed(1.0);
     let mut daemon = Daemon::start(&tank, &[]);
-    let address = address(&mut daemon);
+    let address = daemon.address();
     daemon.wait_until("ready", || is_ok(&get(&address, "/readyz", None)));
     std::thread::sleep(Duration::from_millis(500));
     let body = "{\"by\": \"C. Costa\", \"note\": \"calm water\"}";

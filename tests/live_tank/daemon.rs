@@ -70,6 +70,14 @@ impl Daemon {
         self.wait_until(&format!("\"{words}\" {times} times"), || said() >= times);
     }
 
+    /// The address of its page, which its log names.
+    pub(crate) fn address(&mut self) -> String {
+        self.wait_for("serving the page", 1);
+        let said = self.said();
+        let after = said.rsplit("address=").next().expect("the address is told");
+        after.split_whitespace().next().expect("an address").trim_matches('"').to_owned()
+    }
+
     pub(crate) fn signal(&self, name: &str) {
         let sent = Command::new("kill").args([name, &self.child.id().to_string()]).status();
         assert!(sent.expect("kill is there").success());

@@ -49,10 +49,10 @@ const PARTS: [fn(&CampaignPage) -> Option<Markup>; 16] = [
 
 /// What the parts of the page are made from.
 #[derive(Debug, Clone, Copy)]
-struct CampaignPage<'a> {
-    campaign: &'a Campaign,
-    results: &'a Results,
-    diagnosis: Option<&'a Diagnosis>,
+pub(super) struct CampaignPage<'a> {
+    pub(super) campaign: &'a Campaign,
+    pub(super) results: &'a Results,
+    pub(super) diagnosis: Option<&'a Diagnosis>,
 }
 
 impl<'a> CampaignPage<'a> {
@@ -80,9 +80,16 @@ impl<'a> CampaignPage<'a> {
             .collect()
     }
 
-    fn field_units(&self, run: &'a IdentifiedRun) -> FieldUnits<'a> {
+    pub(super) fn field_units(&self, run: &'a IdentifiedRun) -> FieldUnits<'a> {
         FieldUnits::new(self.campaign, run)
     }
+}
+
+/// The parts that grow on the live page while the day goes on.
+pub(super) fn live_parts(page: &CampaignPage) -> Markup {
+    let parts =
+        [at_speeds::part, damping_against_froude::part, froude_law::part, equivalent_damping::part];
+    html! { @for part in parts { @if let Some(part) = part(page) { (part) } } }
 }
 
 /// The page of the campaign.
