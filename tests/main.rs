@@ -3,8 +3,10 @@
 
 mod a_decay_at_live_instruments_is_reported;
 mod a_pulled_cable_or_a_killed_daemon_costs_no_more_than_it_must;
+mod a_run_rejected_by_hand_leaves_every_identification;
 mod architecture;
 mod bad_input;
+mod browser;
 mod campaign_folder;
 mod decays_are_identified;
 mod dense_posterior;
@@ -14,6 +16,7 @@ mod every_protocol_is_recorded_and_decoded_anew;
 mod forced_runs_of_any_course;
 mod hidden_effects_are_named;
 mod hidden_tank;
+mod http;
 mod instruments_are_asked_zeroed_and_calibrated;
 mod json_schema;
 mod kvlcc2_is_identified_as_published;
@@ -38,6 +41,8 @@ mod the_daemon_is_watched_and_told_to_reload;
 mod the_exact_posterior_is_the_dense_one;
 mod the_hidden_tank_is_sound;
 mod the_json_contract_holds;
+mod the_page_is_guarded;
+mod the_page_shows_the_day;
 mod the_paper_campaign_is_covered;
 mod the_posterior_is_calibrated;
 mod the_report_is_complete_and_self_contained;

@@ -33,7 +33,11 @@ impl Daemon {
         let said = File::options().create(true).append(true).open(&log).expect("a log");
         let child = Command::new(env!("CARGO_BIN_EXE_rolltank"))
             .args(["run", ".", "--clock-speed", &tank.speed.to_string()])
-            .args(["--listen", "127.0.0.1:0"])
+            .args(if arguments.contains(&"--listen") {
+                &[][..]
+            } else {
+                &["--listen", "127.0.0.1:0"]
+            })
             .args(arguments)
             .current_dir(tank.path())
             .env_remove("RUST_LOG")

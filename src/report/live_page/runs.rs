@@ -66,7 +66,7 @@ fn not_used(page: &CampaignPage) -> Markup {
             td.buttons {
                 @if let Some(run) = &stretch.run {
                     button type="button" data-act="accept" data-run=(run)
-                        aria-label={ "Take run " (run) " again" } { "Take again" }
+                        aria-label={ "Take again run " (run) } { "Take again" }
                 }
             }
         }
