@@ -8,7 +8,6 @@ use rusqlite::{Connection, Transaction, params};
 use crate::campaign::Campaign;
 use crate::inverse::estimate::Estimate;
 use crate::results::Results;
-use crate::run::RunKind;
 
 /// Tables of the catalogue; units are in the column names, the 95 % interval is `lo95` to `hi95`.
 const TABLES: &str = "
@@ -122,10 +121,6 @@ fn runs(database: &Transaction, results: &Results) -> Result<(), rusqlite::Error
     let mut insert = database.prepare(&insert_into("run", 26))?;
     for run in &results.runs {
         let identification = &run.identification;
-        let kind = match run.run.kind {
-            RunKind::Decay => "decay",
-            RunKind::Forced => "forced",
-        };
         let [w, w_sd, w_lo, w_hi] = columns(Some(identification.natural_frequency_rad_s));
         let [b1, b1_sd, b1_lo, b1_hi] = columns(Some(identification.damping.b1_per_s));
         let [b3, b3_sd, b3_lo, b3_hi] = columns(Some(identification.damping.b3_s));
@@ -133,7 +128,7 @@ fn runs(database: &Transaction, results: &Results) -> Result<(), rusqlite::Error
         insert.execute(params![
             run.id,
             run.recording,
-            kind,
+            run.run.kind.name(),
             run.condition,
             known(run.run.start_s),
             known(run.run.end_s),

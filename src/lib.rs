@@ -8,15 +8,21 @@ pub mod roll;
 
 pub mod run;
 
-pub mod judgement;
+pub mod settling;
 
 pub mod model;
+
+pub mod judgement;
 
 pub mod campaign;
 
 pub mod inverse;
 
 pub mod results;
+
+pub mod procedure;
+
+pub mod progress;
 
 pub mod diagnosis;
 

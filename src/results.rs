@@ -16,10 +16,33 @@ pub struct IdentifiedRun {
     pub speed_m_s: f64,
     /// Froude number over the run [-].
     pub froude: f64,
+    /// How densely it was sampled.
+    pub sampling: Sampling,
     /// The run as found.
     pub run: Run,
     /// What it says.
     pub identification: Identification,
+}
+
+/// Mean sampling rates over a run.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Sampling {
+    /// Of the roll [Hz].
+    pub roll_hz: Option<f64>,
+    /// Of the rod force or moment [Hz], where one was recorded.
+    pub drive_hz: Option<f64>,
+}
+
+impl Sampling {
+    /// The rates of a run whose samples are still there.
+    pub fn of(run: &Run) -> Self {
+        let rate_hz = |series: &Series| {
+            let (first_s, last_s) = (*series.time_s.first()?, *series.time_s.last()?);
+            let n_intervals = series.time_s.len() - 1;
+            (last_s > first_s).then(|| n_intervals as f64 / (last_s - first_s))
+        };
+        Self { roll_hz: rate_hz(&run.roll), drive_hz: rate_hz(&run.drive) }
+    }
 }
 
 /// A stretch of a recording that was not used.
@@ -65,10 +88,30 @@ pub struct Results {
     pub overviews: Vec<Overview>,
 }
 
+/// Froude numbers further apart than this [-] were meant to differ.
+pub const FROUDE_APART: f64 = 0.012;
+
+/// Runs in groups of one nominal Froude number, slowest first.
+pub fn by_speed(mut runs: Vec<&IdentifiedRun>) -> Vec<Vec<&IdentifiedRun>> {
+    runs.sort_by(|a, b| a.froude.total_cmp(&b.froude));
+    runs.chunk_by(|a, b| b.froude - a.froude <= FROUDE_APART).map(<[_]>::to_vec).collect()
+}
+
 /// Periods that a rod may take from one steady excitation to the next, or to rest.
 const CHANGEOVER_PERIODS: f64 = 5.0;
 
 impl Results {
+    /// Conditions that have runs, in the order in which they were first met.
+    pub fn conditions(&self) -> Vec<&str> {
+        let mut conditions: Vec<&str> = Vec::new();
+        for run in &self.runs {
+            if !conditions.contains(&run.condition.as_str()) {
+                conditions.push(&run.condition);
+            }
+        }
+        conditions
+    }
+
     /// Refusals to be judged, then the short changeovers beside forced runs: the rod starts, stops
     /// or goes over to its next frequency. Each in order.
     pub fn refusals_and_changeovers(&self) -> (Vec<&RejectedStretch>, Vec<&RejectedStretch>) {

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The layers of `src`, top first; each may name those below it.
-const LAYERS: [&str; 19] = [
+const LAYERS: [&str; 22] = [
     "main",
     "command",
     "bench",
@@ -17,11 +17,14 @@ const LAYERS: [&str; 19] = [
     "reference",
     "tank",
     "diagnosis",
+    "progress",
+    "procedure",
     "results",
     "inverse",
     "campaign",
     "judgement",
     "model",
+    "settling",
     "run",
     "roll",
     "hull",
@@ -53,7 +56,7 @@ const OWNERS: [(&str, &[&str]); 25] = [
             "devices/src/setup",
         ],
     ),
-    ("csv", &["src/report", "replay/src"]),
+    ("csv", &["src/campaign/plan_table", "src/report", "replay/src"]),
     ("mcap", &["replay/src"]),
     ("tokio", &["src/live", "src/page"]),
     ("axum", &["src/page"]),

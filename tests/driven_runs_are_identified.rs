@@ -48,6 +48,7 @@ fn whole(pass: &SimulatedPass) -> Run {
             start_s: 0.0,
             end_s: REST_S,
             roll_rad: mean(Quantity::Roll),
+            roll_sd_rad: 0.0,
             force: Some(mean(Quantity::Force)),
         }),
         roll,

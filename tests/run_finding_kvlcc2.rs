@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use devices::{Quantity, Sample};
 use rolltank::run::{Event, Limits, Run, RunEnd, RunFinder, RunKind};
 
-fn measured(file: &str) -> Option<Vec<Sample>> {
+pub(crate) fn measured(file: &str) -> Option<Vec<Sample>> {
     let folder = std::env::var_os("ROLLTANK_MEASURED").map_or_else(
         || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/measured"),
         PathBuf::from,

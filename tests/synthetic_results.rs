@@ -2,25 +2,21 @@
 
 use std::f64::consts::PI;
 use std::path::PathBuf;
-use std::sync::LazyLock;
 
+use crate::synthetic_roll::{STEP_S, Truth};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use replay::Columns;
-use rolltank::campaign::{Campaign, Live, Recording, Tank};
+use rolltank::campaign::{Campaign, Live, Plan, Recording, Tank};
 use rolltank::hull::{Hull, Water};
 use rolltank::inverse::estimate::Estimate;
 use rolltank::inverse::identification::{
     Beliefs, Chain, CurvePoint, DampingFit, EquivalentDamping, ForcedResponse, FormBelief,
     FroudeLaw, HalfCycle, Identification, Method, MomentHistory, Resimulation, Trace,
 };
-
-use rolltank::judgement::Judgements;
-use rolltank::results::{IdentifiedRun, Overview, RejectedStretch, Results};
+use rolltank::results::{IdentifiedRun, Overview, RejectedStretch, Results, Sampling};
 use rolltank::roll::exciting_moment::{Arm, Exciter};
 use rolltank::run::{Run, RunEnd, RunKind, Series, Still};
-
-use crate::synthetic_roll::{STEP_S, Truth};
 
 /// Noise of the roll channel [rad].
 const NOISE_RAD: f64 = 0.000_9;
@@ -67,14 +63,15 @@ pub(crate) fn campaign(name: &str) -> Campaign {
         columns: Columns::default(),
         recordings,
         model: None,
-        judgements: Judgements::default(),
+        judgements: rolltank::judgement::Judgements::default(),
         live: Live::default(),
+        plan: Plan::default(),
     }
 }
 
 /// Decays and forced runs of both conditions at every Froude number, from one seed.
 pub(crate) fn results() -> Results {
-    static RESULTS: LazyLock<Results> = LazyLock::new(simulated);
+    static RESULTS: std::sync::LazyLock<Results> = std::sync::LazyLock::new(simulated);
     RESULTS.clone()
 }
 
@@ -182,6 +179,7 @@ fn identified(
         condition: condition.to_owned(),
         speed_m_s: froude * 4.952,
         froude,
+        sampling: Sampling::of(&run),
         run,
         identification,
     }
@@ -190,20 +188,19 @@ fn identified(
 /// The run as the finder would hand it over.
 fn found(truth: &Truth, froude: f64, roll: Series, moment_n_m: &[f64]) -> Run {
     let forced = truth.forced();
-    let force_n = moment_n_m.iter().map(|moment| moment / 0.43).collect();
+    let force = Some(0.02);
+    let still = Still { start_s: 4.0, end_s: 20.9, roll_rad: 0.001, roll_sd_rad: 0.0, force };
+    let n = if forced { moment_n_m.len() } else { 0 };
+    let force_n = moment_n_m[..n].iter().map(|moment| moment / 0.43).collect();
     Run {
         kind: if forced { RunKind::Forced } else { RunKind::Decay },
         start_s: roll.time_s[0],
         end_s: roll.time_s[roll.time_s.len() - 1],
         end: if forced { RunEnd::ExcitationChanged } else { RunEnd::LostInNoise },
         speed_m_s: Some(froude * 4.952),
-        drive: if forced {
-            Series { time_s: roll.time_s.clone(), value: force_n }
-        } else {
-            Series::default()
-        },
+        drive: Series { time_s: roll.time_s[..n].to_vec(), value: force_n },
         roll,
-        still: Some(Still { start_s: 4.0, end_s: 20.9, roll_rad: 0.001, force: Some(0.02) }),
+        still: Some(still),
         excitation_rad_s: forced.then_some(truth.excitation_rad_s),
     }
 }

@@ -6,6 +6,8 @@ mod judged;
 mod live;
 mod mistake;
 mod particulars;
+mod plan;
+mod plan_table;
 mod read;
 mod recordings;
 mod speeds;
@@ -26,6 +28,7 @@ use crate::roll::exciting_moment::Exciter;
 pub use calibrations::{CALIBRATIONS_FILE, TakenCalibration, ZeroTaken, keep_calibration};
 pub use live::LIVE_FOLDER;
 pub use mistake::Mistake;
+pub use plan::PlannedRuns;
 pub use read::{FILE_NAME, read};
 
 /// A validated campaign file; every value is in SI units and in its physical range.
@@ -53,6 +56,8 @@ pub struct Campaign {
     pub judgements: Judgements,
     /// The instruments of the tank, where there are such.
     pub live: Live,
+    /// The runs that are asked for, in the order in which they are to be made.
+    pub plan: Plan,
 }
 
 impl Campaign {
@@ -75,6 +80,15 @@ pub struct Live {
     pub lines: Vec<Option<usize>>,
     /// The devices with everything decided.
     pub devices: Vec<DeviceConfig>,
+}
+
+/// The test plan.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Plan {
+    /// The file that holds it, relative to the campaign's folder.
+    pub file: String,
+    /// Its rows in order; empty where there is no plan.
+    pub rows: Vec<PlannedRuns>,
 }
 
 /// Limits of the tank that runs are checked against.

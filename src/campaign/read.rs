@@ -8,7 +8,9 @@ use replay::Columns;
 
 use super::mistake::Mistake;
 use super::tree::{Section, Source};
-use super::{Campaign, LIVE_FOLDER, Recording, columns, judged, live, particulars, recordings};
+use super::{
+    Campaign, LIVE_FOLDER, Recording, columns, judged, live, particulars, plan, recordings,
+};
 use crate::judgement::Judgements;
 use crate::model::model_file::ModelFile;
 
@@ -43,6 +45,7 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
     let known = columns.clone().unwrap_or_default();
     let live = live::read(root, folder);
     let is_live = !live.setups.is_empty();
+    let plan = plan::read(root, folder, hull.as_ref(), &water);
     let recordings = if root.holds("recording") {
         let named = |quantity: Quantity| root.holds_below("columns", quantity.name());
         let mut listed = recordings::read(root.sections("recording"), folder, &named);
@@ -53,6 +56,7 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
     } else {
         root.leave("recording");
         let mut all = found(source, folder, folder);
+        all.retain(|recording| recording.name != plan.file);
         // The daemon adds to these, and their runs are numbered behind those of all others.
         all.sort_by_key(recordings::is_live);
         all
@@ -62,8 +66,6 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
             instruments in [[device]]";
         source.add(None, "the folder holds no recording".to_owned(), Some(hint.to_owned()));
     }
-    // The plan of the day takes no part in reading recordings.
-    root.leave("plan");
     root.close();
     check_columns(root, columns.as_ref(), &recordings);
     check_exciter(root, &known);
@@ -84,6 +86,7 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
         model,
         judgements,
         live,
+        plan,
     })
 }
 

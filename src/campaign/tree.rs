@@ -84,6 +84,12 @@ pub(super) const POSITIVE: Limits =
 pub(super) const NOT_NEGATIVE: Limits =
     Limits { words: "a finite number, 0 or above", hold: |value| value >= 0.0 };
 
+/// A count: a whole number from one up.
+pub(super) const COUNT: Limits = Limits {
+    words: "a whole number, 1 to 1000",
+    hold: |value| (1.0..=1000.0).contains(&value) && (value - value.round()).abs() < 1e-9,
+};
+
 /// A sign.
 pub(super) const SIGN: Limits =
     Limits { words: "1 or -1", hold: |value| [1.0, -1.0].contains(&value) };
@@ -194,6 +200,14 @@ impl<'s> Section<'s> {
                 self.wrong_type(key, other, "a text in quotes");
                 None
             }
+        }
+    }
+
+    /// The text of a key that may also hold an array of tables; none where it does or is absent.
+    pub(super) fn text_or_tables(&self, key: &'static str) -> Option<&'s str> {
+        match self.value(key)? {
+            DeValue::Array(_) => None,
+            _ => self.text(key),
         }
     }
 

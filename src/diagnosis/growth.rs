@@ -91,6 +91,7 @@ pub(super) fn grow(survey: &Survey) -> Grown {
         fit.extensions.remove(wild);
         last = settle(survey, fit, &noise);
     }
+    let (base, last) = (base.over_scatters(survey), last.over_scatters(survey));
     Grown { base, last, noise, entered, ranking, implausible }
 }
 

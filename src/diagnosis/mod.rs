@@ -18,6 +18,7 @@ mod layout;
 mod leftover;
 mod next_run;
 mod observation;
+mod over_scatters;
 mod plan;
 mod records;
 mod run_fit;

@@ -20,7 +20,7 @@ pub struct Observation {
     pub at: Circumstances,
     /// What the record shows without a model.
     pub facts: Facts,
-    /// Instant of time zero on the recording's time base [s].
+    /// Instant of time zero on the recording's time base [s]; that of a decay's release.
     pub origin_s: f64,
     /// Times of the roll [s].
     pub roll_time_s: Vec<f64>,
@@ -55,11 +55,19 @@ impl Observation {
     }
 
     fn decay(run: &IdentifiedRun, campaign: &Campaign, order: usize) -> Result<Self, String> {
-        let record = Record::new(&run.run.roll)?;
+        let mut record = Record::new(&run.run.roll)?;
         let known = &run.identification;
-        let start = vec![known.initial_roll_rad.mean, known.initial_roll_rate_rad_per_s.mean, 0.0];
-        let moment = moment(&run.run, campaign, record.origin_s, record.rough_frequency_rad_s);
         let rolling_rad_s = known.natural_frequency_rad_s.mean;
+        let (roll, rate) =
+            (known.initial_roll_rad.mean, known.initial_roll_rate_rad_per_s.mean / rolling_rad_s);
+        // The record begins when the model is surely free; what remembers began at the release.
+        let since_s = (-rate * roll.signum()).max(0.0).atan2(roll.abs()) / rolling_rad_s;
+        record.origin_s -= since_s;
+        record.time_s.iter_mut().for_each(|t| *t += since_s);
+        let heel_rad = if since_s > 0.0 { roll.signum() * roll.hypot(rate) } else { roll };
+        let rate_rad_per_s = if since_s > 0.0 { 0.0 } else { rate * rolling_rad_s };
+        let start = vec![heel_rad, rate_rad_per_s, 0.0];
+        let moment = moment(&run.run, campaign, record.origin_s, record.rough_frequency_rad_s);
         Ok(Self::assemble(run, campaign, order, &record, moment, start, rolling_rad_s))
     }
 
@@ -133,7 +141,7 @@ impl Observation {
             order,
             has_moment: !moment.time_s.is_empty(),
             n_runs: 1,
-            initial_roll_rad: record.roll_rad[0] - mean,
+            initial_roll_rad: start[0],
         };
         let moment_noise =
             if moment.value.is_empty() { 1.0 } else { facts::rough_noise(&moment.value) };

@@ -10,7 +10,7 @@ pub(super) struct Scatter {
 }
 
 /// Scatters that are weighed: from none to that of the seed paper's Table 2 and beyond.
-const DAMPING: [f64; 6] = [1e-3, 0.006, 0.02, 0.06, 0.15, 0.35];
+const DAMPING: [f64; 8] = [1e-3, 0.006, 0.012, 0.02, 0.035, 0.06, 0.15, 0.35];
 const FREQUENCY: [f64; 4] = [1e-5, 5e-4, 2e-3, 1e-2];
 
 /// Every scatter that is weighed; a campaign whose conditions have one run each has none.

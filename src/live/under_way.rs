@@ -23,9 +23,13 @@ use crate::campaign::{self, Campaign, FILE_NAME};
 use crate::page::status::RecordedStatus;
 use crate::page::{Board, Order};
 use crate::pipeline::{Found, LiveRuns};
+use crate::procedure::CALM_DEG;
+use crate::settling::Settling;
 
 /// How often time is told to the loop.
 const TICK: Duration = Duration::from_millis(50);
+/// Ticks from one forecast of the calm to the next.
+const TICKS_PER_FORECAST: u64 = 20;
 /// Without a sample of roll for so long [s] nothing can be under way.
 const ROLL_AWAY_S: f64 = 10.0;
 /// Rest [s] before a new campaign file comes into force: a model that is heeled for its release is
@@ -79,6 +83,10 @@ pub(super) struct UnderWay<'a> {
 pub(super) struct State {
     pub(super) attached: Vec<Attached>,
     pub(super) n_attached: usize,
+    /// How the water calms between runs.
+    pub(super) settling: Option<Settling>,
+    /// Ticks of the clock so far.
+    pub(super) n_ticks: u64,
     /// What each strip shows.
     pub(super) strips: Vec<Quantity>,
     pub(super) losses: LinkLosses,
@@ -224,7 +232,11 @@ impl UnderWay<'_> {
     }
 
     /// Hands samples to the page, in the units in which people read them.
-    fn show(&self, samples: &[Sample]) {
+    fn show(&mut self, samples: &[Sample]) {
+        let settling = self.state.settling.get_or_insert_with(|| Settling::new(CALM_DEG));
+        for sample in samples.iter().filter(|sample| sample.quantity == Quantity::Roll) {
+            settling.push(sample.time_s, sample.value);
+        }
         let mut strips = self.board.strips();
         for &Sample { quantity, time_s, value } in samples {
             let shown = if quantity == Quantity::Roll { value.to_degrees() } else { value };
@@ -313,6 +325,7 @@ impl UnderWay<'_> {
 
     fn tick(&mut self) {
         let now_ns = self.clock.now_ns();
+        self.state.n_ticks += 1;
         self.keeper.tick(self.clock.real(now_ns));
         self.supervisor.alive(self.clock.real(now_ns));
         let since_s = |at_ns: u64| now_ns.saturating_sub(at_ns) as f64 / 1e9;
@@ -345,10 +358,13 @@ impl UnderWay<'_> {
         let progress = self.keeper.progress();
         let (state, at_s) = (&self.state, self.clock.now_ns() as f64 / 1e9);
         let n_unheard = self.runs.as_ref().map_or(0, LiveRuns::n_unheard);
+        let is_due = state.n_ticks.is_multiple_of(TICKS_PER_FORECAST);
+        let calm = state.settling.as_ref().filter(|_| is_due).map(Settling::calm);
         let at_rest = self.runs.as_ref().is_none_or(LiveRuns::is_at_rest);
         self.board.change(|status| {
             status.at_s = at_s;
             status.motion.note_rest(at_rest, at_s);
+            status.calm = calm.or(status.calm);
             status.n_events = state.n_events;
             status.devices = state.attached.iter().map(Attached::status).collect();
             status.runs.n_unheard = status.runs.n_unheard.max(n_unheard);

@@ -92,6 +92,8 @@ pub(super) fn add_tangents(
                 rate_rad_per_s: along(i.rate_rad_per_s, sample, 1),
                 acceleration_rad_per_s2: along(i.acceleration_rad_per_s2, sample, 2),
                 moment_n_m: along(i.moment_n_m, sample, 3),
+                natural_rad_s: i.natural_rad_s.into(),
+                b1_per_s: i.b1_per_s.into(),
                 past: i.past,
                 run: i.run,
             })

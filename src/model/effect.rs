@@ -67,9 +67,9 @@ pub struct Circumstances {
     pub froude: f64,
     /// Carriage speed [m/s].
     pub speed_m_s: f64,
-    /// Natural frequency [rad/s] as identified.
+    /// Natural frequency [rad/s] as identified: for scales, never for an equation.
     pub natural_rad_s: f64,
-    /// Linear damping [1/s] as identified, at least a hundredth of a per cent of critical.
+    /// Linear damping [1/s] as identified, for scales too, at least a hundredth of a per cent of critical.
     pub b1_per_s: f64,
     /// Total inertia `K/w^2` [kg m2].
     pub inertia_kg_m2: f64,
@@ -200,6 +200,10 @@ pub struct Instant<'a, N = f64> {
     pub acceleration_rad_per_s2: N,
     /// Exciting moment [N m].
     pub moment_n_m: N,
+    /// Natural frequency of the base equation [rad/s].
+    pub natural_rad_s: N,
+    /// Linear damping of the base equation [1/s].
+    pub b1_per_s: N,
     /// What came before.
     pub past: Past<'a>,
     /// The run.

@@ -80,6 +80,8 @@ impl Decay<'_> {
             rate_rad_per_s: rate,
             acceleration_rad_per_s2: -b1_per_s * rate - b3_s * rate.powi(3) - w * w * roll,
             moment_n_m: 0.0,
+            natural_rad_s: w,
+            b1_per_s,
             past: Past::Free(history),
             run: self.run,
         }

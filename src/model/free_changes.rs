@@ -13,6 +13,8 @@ use super::term::Term;
 
 /// Frequency, linear and cubic damping: the numbers of the base equation that move a decay.
 const N_MOVING: usize = 3;
+/// The first of them, which effects' equations name.
+const N_NAMED: usize = slope::PARAMETER - slope::BASE;
 
 /// The equation about a motion at every step; two steps of the motion are one of its changes.
 pub(super) struct Changes<const N: usize> {
@@ -234,6 +236,9 @@ impl<const N: usize> About<'_, N> {
         self.jacobian[row][1] += by * of.slopes[slope::RATE] + of_acceleration * of_rate;
         for (column, of_number) in self.forcing.iter_mut().zip(of_base.numbers) {
             column[row] += of_acceleration * of_number;
+        }
+        for (k, column) in self.forcing[..N_NAMED].iter_mut().enumerate() {
+            column[row] += by * of.slopes[slope::BASE + k];
         }
         for (k, column) in columns.enumerate() {
             self.forcing[column][row] += by * of.slopes[slope::PARAMETER + k];

@@ -81,6 +81,8 @@ impl<'a> Imposed<'a> {
             rate_rad_per_s,
             acceleration_rad_per_s2,
             moment_n_m: 0.0,
+            natural_rad_s: self.base.natural_rad_s,
+            b1_per_s: self.base.b1_per_s,
             past: Past::Imposed(self.course),
             run: self.run,
         }

@@ -16,6 +16,9 @@ type Lagged = Vec<Option<Vec<[f64; MOST_LAGS]>>>;
 /// What each number of a course does to roll, rate and acceleration at one instant.
 type CourseChanges = [[f64; 3]; N_COURSE];
 
+/// Numbers of the base equation that effects' equations name, the first of them.
+const N_NAMED: usize = slope::PARAMETER - slope::BASE;
+
 /// All that a forced run's changes are made of.
 struct Changes<'a> {
     imposed: &'a Imposed<'a>,
@@ -136,15 +139,17 @@ impl<'a> Changes<'a> {
                 .map(|(i, states)| slopes::of_lag(&lag, &slopes::inputs(i), values, states).0)
                 .collect();
             let jacobian = jacobian(&rows[0]);
+            let named = N_COURSE..N_COURSE + N_NAMED;
             let lagged = (0..self.n_columns).map(|column| {
                 let forcing = |k: usize| -> [f64; MOST_LAGS] {
                     rows[k].map(|row| match column {
                         j if j < N_COURSE => along(&row, &courses[k][j]),
+                        j if named.contains(&j) => row.slopes[slope::BASE + j - N_COURSE],
                         j => row.slopes[slope::PARAMETER + j - own.start],
                     })
                 };
-                (column < N_COURSE || own.contains(&column))
-                    .then(|| driven(&jacobian, forcing, rows.len(), step_s))
+                let moves = column < N_COURSE || own.contains(&column) || named.contains(&column);
+                moves.then(|| driven(&jacobian, forcing, rows.len(), step_s))
             });
             all.push(lagged.collect());
         }
@@ -198,6 +203,9 @@ impl<'a> Changes<'a> {
                 };
                 let motion = [slope::ROLL, slope::RATE, slope::ACCELERATION];
                 whole.iter_mut().zip(motion).for_each(|(whole, k)| *whole += by * of.slopes[k]);
+                for k in 0..N_NAMED {
+                    sums[N_COURSE + k] += by * of.slopes[slope::BASE + k];
+                }
                 for (k, column) in own.enumerate() {
                     sums[column] += by * of.slopes[slope::PARAMETER + k];
                 }
@@ -214,12 +222,8 @@ impl<'a> Changes<'a> {
                 *sum += whole[0] * change[0] + whole[1] * change[1] + whole[2] * change[2];
             }
             let all = instant.moment_n_m / scale;
-            sums[N_COURSE..N_COURSE + N_BASE].copy_from_slice(&[
-                2.0 * (w * roll - all / w),
-                rate,
-                rate.powi(3),
-                all,
-            ]);
+            let of_base = [2.0 * (w * roll - all / w), rate, rate.powi(3), all];
+            sums[N_COURSE..].iter_mut().zip(of_base).for_each(|(sum, of_base)| *sum += of_base);
             self.push(instant, &mut sums[first..]);
             for (column, sum) in sums.iter().enumerate() {
                 let [roll, rate, acceleration] = course.get(column).copied().unwrap_or_default();

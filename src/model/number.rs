@@ -4,7 +4,7 @@ use std::array;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Slopes that a [`Sloped`] number carries.
-pub const N_SLOPES: usize = 8;
+pub const N_SLOPES: usize = 10;
 
 /// What the slopes of an equation's inputs count from; the parameters come last.
 pub mod slope {
@@ -16,8 +16,10 @@ pub mod slope {
     pub const ACCELERATION: usize = 2;
     /// Two states of an effect that remembers.
     pub const REMEMBERED: usize = 3;
+    /// Natural frequency and linear damping of the base equation.
+    pub const BASE: usize = 5;
     /// First parameter.
-    pub const PARAMETER: usize = 5;
+    pub const PARAMETER: usize = 7;
 }
 
 /// Most parameters of one set of an effect, strengths and shapes together.

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::motion::Motion;
 use super::pass::Pass;
+use crate::settling::Calm;
 
 /// A copy of the daemon's state that is renewed a few times a second.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -36,6 +37,8 @@ pub struct Status {
     pub paused_by: Option<String>,
     /// What the model does.
     pub motion: Motion,
+    /// How calm the water is, where it is known.
+    pub calm: Option<Calm>,
     /// What the carriage does.
     pub pass: Pass,
     /// Length of the tank [m], where given.

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::status::Status;
+use crate::settling::ToGo;
 
 /// What a person must see.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -21,16 +22,28 @@ pub(super) fn doing(status: &Status) -> String {
     let Some(swing_rad) = motion.swing_rad else {
         return "waiting for the instruments: no roll has come yet".to_owned();
     };
-    let swing_deg = swing_rad.to_degrees();
     let since_s = (status.at_s - motion.since_s).max(0.0);
     let run = motion.run_ended_s.map_or_else(
         || "no run yet".to_owned(),
         |ended_s| format!("{:.0} s since the last run", (status.at_s - ended_s).max(0.0)),
     );
-    if motion.at_rest {
-        format!("at rest for {since_s:.0} s: roll {swing_deg:.2} deg, {run}")
-    } else {
-        format!("the model moves since {since_s:.0} s: roll {swing_deg:.2} deg, {run}")
+    let swing_deg = swing_rad.to_degrees();
+    if !motion.at_rest {
+        return format!("the model moves since {since_s:.0} s: roll {swing_deg:.2} deg, {run}");
+    }
+    let known = status.calm.and_then(|calm| Some((calm.level_deg?, calm.to_go)));
+    let Some((level_deg, to_go)) = known else {
+        return format!("at rest for {since_s:.0} s: roll {swing_deg:.2} deg, {run}");
+    };
+    match to_go {
+        ToGo::Calm => format!("calm, ready for a run: roll {level_deg:.2} deg, {run}"),
+        ToGo::Seconds { median_s, lo95_s, hi95_s } => format!(
+            "waiting for calm: roll {level_deg:.2} deg, {run}, about {median_s:.0} s to go \
+             ({lo95_s:.0} to {hi95_s:.0})"
+        ),
+        ToGo::CantTell { why } => {
+            format!("waiting for calm: roll {level_deg:.2} deg, {run}; {why}")
+        }
     }
 }
 
@@ -78,6 +91,7 @@ pub(super) fn alarms(status: &Status) -> Vec<Alarm> {
 mod tests {
     use super::super::status::DeviceStatus;
     use super::*;
+    use crate::settling::Calm;
 
     #[test]
     fn a_full_disk_stands_above_a_refused_file() {
@@ -96,5 +110,11 @@ mod tests {
         (status.motion.at_rest, status.motion.since_s) = (true, 150.0);
         status.motion.run_ended_s = Some(60.0);
         assert_eq!(doing(&status), "at rest for 50 s: roll 0.08 deg, 140 s since the last run");
+        let to_go = ToGo::Seconds { median_s: 60.0, lo95_s: 41.0, hi95_s: 88.0 };
+        status.calm = Some(Calm { level_deg: Some(0.08), decay_time_s: Some(70.0), to_go });
+        assert_eq!(
+            doing(&status),
+            "waiting for calm: roll 0.08 deg, 140 s since the last run, about 60 s to go (41 to 88)"
+        );
     }
 }

@@ -9,7 +9,7 @@ use crate::inverse;
 use crate::inverse::Setting;
 use crate::inverse::froude_law::Point;
 use crate::inverse::identification::FroudeLaw;
-use crate::results::{IdentifiedRun, Overview, RejectedStretch, Results};
+use crate::results::{IdentifiedRun, Overview, RejectedStretch, Results, Sampling};
 use crate::run::{Rejection, RunKind};
 
 /// The collecting end of the pipeline.
@@ -61,6 +61,7 @@ impl<'c> Collector<'c> {
             speed_m_s,
             // The damping of a model towed astern is reported at the size of its speed.
             froude: self.campaign.hull.froude(speed_m_s.abs(), &self.campaign.water),
+            sampling: Sampling::of(&run),
             run,
             identification,
         };
@@ -122,16 +123,12 @@ pub(super) fn joined(earlier: &Results, later: &Results) -> Results {
 /// One law per condition, in the order in which the conditions were first met.
 ///
 /// Decays carry the law, as in Table 2 of the paper; forced runs only where a condition has none.
-pub(super) fn froude_laws(runs: &[IdentifiedRun]) -> Vec<FroudeLaw> {
-    let mut conditions: Vec<&str> = Vec::new();
-    for run in runs {
-        if !conditions.contains(&run.condition.as_str()) {
-            conditions.push(&run.condition);
-        }
-    }
+pub(super) fn froude_laws(results: &Results) -> Vec<FroudeLaw> {
     let law = |condition: &str| {
         let of_kind = |kind: RunKind| -> Vec<Point> {
-            runs.iter()
+            results
+                .runs
+                .iter()
                 .filter(|run| run.condition == condition && run.run.kind == kind)
                 .map(|run| {
                     let damping = &run.identification.damping;
@@ -143,5 +140,5 @@ pub(super) fn froude_laws(runs: &[IdentifiedRun]) -> Vec<FroudeLaw> {
         let points = if decays.is_empty() { of_kind(RunKind::Forced) } else { decays };
         inverse::froude_law(condition, &points)
     };
-    conditions.into_iter().filter_map(law).collect()
+    results.conditions().into_iter().filter_map(law).collect()
 }

@@ -26,6 +26,6 @@ pub fn judged(mut results: Results, judgements: &Judgements) -> Results {
         }
         results.runs.push(run);
     }
-    results.froude_laws = froude_laws(&results.runs);
+    results.froude_laws = froude_laws(&results);
     results
 }

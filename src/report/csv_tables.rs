@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::field_units::FieldUnits;
-use super::{ReportError, json, whole_file};
+use super::{ReportError, whole_file};
 use crate::campaign::Campaign;
 use crate::inverse::estimate::Estimate;
 use crate::results::Results;
@@ -79,7 +79,7 @@ fn runs(campaign: &Campaign, results: &Results) -> Table {
         let mut row = vec![
             run.id.clone(),
             run.recording.clone(),
-            json::kind_name(run.run.kind).to_owned(),
+            run.run.kind.name().to_owned(),
             run.condition.clone(),
         ];
         row.extend([run.run.start_s, run.run.end_s, run.froude, run.speed_m_s].map(number));

@@ -4,7 +4,7 @@ use super::field_units::COMPARISON_DEG;
 use super::number;
 use crate::inverse::estimate::Estimate;
 use crate::inverse::identification::{EquivalentDamping, FroudeLaw};
-use crate::results::{IdentifiedRun, Results};
+use crate::results::{IdentifiedRun, Results, by_speed};
 use crate::run::RunKind;
 
 /// Longest condition that is printed whole; the table keeps within 100 columns.
@@ -12,9 +12,6 @@ const CONDITION_MAX: usize = 60;
 
 /// Significant digits of a mean, for the same reason.
 const DIGITS_MAX: i32 = 4;
-
-/// Froude numbers nearer than this [-] share a row of forced runs.
-const FROUDE_APART: f64 = 0.012;
 
 /// Damping run by run under its condition, aligned, at most 100 columns wide.
 ///
@@ -25,25 +22,15 @@ pub fn damping_table(results: &Results) -> String {
     }
     let header = ["Fr", "kind", "b1 [1/s]", "b3 [s]", "b_eq(5 deg) [1/s]"].map(str::to_owned);
     let mut rows = vec![(None, header)];
-    let mut conditions: Vec<&str> = Vec::new();
-    for run in &results.runs {
-        if !conditions.contains(&run.condition.as_str()) {
-            conditions.push(&run.condition);
-        }
-    }
-    for condition in conditions {
+    for condition in results.conditions() {
         let of = |kind| {
             let runs = results.runs.iter();
-            let mut runs: Vec<_> =
-                runs.filter(|run| run.condition == condition && run.run.kind == kind).collect();
-            runs.sort_by(|a, b| a.froude.total_cmp(&b.froude));
-            runs
+            runs.filter(|run| run.condition == condition && run.run.kind == kind).collect()
         };
-        let decays = of(RunKind::Decay);
+        let decays = by_speed(of(RunKind::Decay)).concat();
         rows.extend(decays.into_iter().map(|run| (Some(condition), decay_row(run))));
-        let forced = of(RunKind::Forced);
-        let same = |a: &&IdentifiedRun, b: &&IdentifiedRun| b.froude - a.froude <= FROUDE_APART;
-        rows.extend(forced.chunk_by(same).map(|runs| (Some(condition), forced_row(runs))));
+        let forced = by_speed(of(RunKind::Forced));
+        rows.extend(forced.iter().map(|runs| (Some(condition), forced_row(runs))));
     }
     let laws = results.froude_laws.iter().map(law_lines);
     std::iter::once(aligned(&rows)).chain(laws).collect()

@@ -7,8 +7,10 @@ use super::json_beliefs::{BeliefsJson, CurvePointJson};
 use crate::campaign::Campaign;
 use crate::inverse::estimate::Estimate;
 use crate::inverse::identification::{Chain, ForcedResponse, FroudeLaw, HalfCycle, Method};
+use crate::procedure::{self, Answer, CampaignAnswer};
+use crate::progress::{Progress, progress};
 use crate::results::{IdentifiedRun, RejectedStretch, Results};
-use crate::run::{RunEnd, RunKind};
+use crate::run::RunEnd;
 
 /// Name and version of the contract.
 pub const IDENTIFICATION_NAME: &str = "rolltank.identification/1";
@@ -31,6 +33,8 @@ pub fn identification_json(campaign: &Campaign, results: &Results) -> String {
         runs: results.runs.iter().map(|run| RunJson::new(campaign, run)).collect(),
         rejected: results.rejected.iter().map(RejectedJson::new).collect(),
         froude_law: results.froude_laws.iter().map(FroudeLawJson::new).collect(),
+        gates: procedure::of_campaign(results),
+        plan: progress(campaign, &results.runs),
         notes: results
             .overviews
             .iter()
@@ -51,6 +55,8 @@ struct Document<'a> {
     runs: Vec<RunJson<'a>>,
     rejected: Vec<RejectedJson<'a>>,
     froude_law: Vec<FroudeLawJson<'a>>,
+    gates: Vec<CampaignAnswer>,
+    plan: Progress,
     notes: Vec<NotesJson<'a>>,
 }
 
@@ -83,6 +89,7 @@ struct RunJson<'a> {
     inertia_used_kg_m2: Estimate,
     forced: Option<ForcedJson>,
     chain: Option<ChainJson>,
+    gates: Vec<Answer>,
     remarks: &'a [String],
 }
 
@@ -93,7 +100,7 @@ impl<'a> RunJson<'a> {
         Self {
             id: &run.id,
             recording: &run.recording,
-            kind: kind_name(run.run.kind),
+            kind: run.run.kind.name(),
             condition: &run.condition,
             start_s: run.run.start_s,
             end_s: run.run.end_s,
@@ -118,6 +125,7 @@ impl<'a> RunJson<'a> {
             inertia_used_kg_m2: units.inertia_kg_m2(),
             forced: identification.forced.as_ref().map(ForcedJson::new),
             chain: identification.chain.as_ref().map(ChainJson::new),
+            gates: procedure::of_run(run),
             remarks: &identification.remarks,
         }
     }
@@ -262,14 +270,6 @@ impl<'a> FroudeLawJson<'a> {
 struct NotesJson<'a> {
     recording: &'a str,
     notes: &'a [String],
-}
-
-/// The kind of a run as the contract writes it.
-pub(super) fn kind_name(kind: RunKind) -> &'static str {
-    match kind {
-        RunKind::Decay => "decay",
-        RunKind::Forced => "forced",
-    }
 }
 
 fn method_name(method: Method) -> &'static str {

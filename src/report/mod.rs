@@ -9,6 +9,7 @@ mod diagnosis_text;
 mod document;
 mod field_units;
 pub(crate) mod figure;
+mod gates;
 mod glossary;
 mod json;
 mod json_beliefs;

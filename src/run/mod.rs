@@ -35,6 +35,7 @@ mod usable_end;
 
 pub use finder::RunFinder;
 pub use limits::Limits;
+pub(crate) use noise::SampleNoise;
 
 /// Values of one channel with their times, both of the same length.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -52,6 +53,16 @@ pub enum RunKind {
     Decay,
     /// Rolled by the oscillator rod.
     Forced,
+}
+
+impl RunKind {
+    /// The kind as files and contracts write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Decay => "decay",
+            Self::Forced => "forced",
+        }
+    }
 }
 
 /// Why the usable stretch of a run ends where it does.
@@ -84,6 +95,8 @@ pub struct Still {
     pub end_s: f64,
     /// Mean roll [rad].
     pub roll_rad: f64,
+    /// Standard deviation of the roll about it [rad], noise included.
+    pub roll_sd_rad: f64,
     /// Mean rod force [N] or moment [N m], where one is recorded.
     pub force: Option<f64>,
 }

@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1e-12;
 /// sampled every `h` enters it only with `(w h)^4`: at ten values a period with 15 %, at twenty
 /// with 1 %. Blocks of `BLOCK_LENGTH` values give one estimate each.
 #[derive(Debug)]
-pub(super) struct Noise<const BLOCK_LENGTH: usize> {
+pub(crate) struct Noise<const BLOCK_LENGTH: usize> {
     last: [f64; 4],
     n_last: usize,
     square_sum: f64,
@@ -33,11 +33,11 @@ impl<const BLOCK_LENGTH: usize> Default for Noise<BLOCK_LENGTH> {
 /// Noise of bins, known after a second.
 pub(super) type BinNoise = Noise<20>;
 /// Noise of samples, known to some 5 %.
-pub(super) type SampleNoise = Noise<100>;
+pub(crate) type SampleNoise = Noise<100>;
 
 impl<const BLOCK_LENGTH: usize> Noise<BLOCK_LENGTH> {
     /// Takes the next value.
-    pub(super) fn push(&mut self, value: f64) {
+    pub(crate) fn push(&mut self, value: f64) {
         let [a, b, c, d] = self.last;
         if self.n_last == 4 {
             let fourth = value - 4.0 * d + 6.0 * c - 4.0 * b + a;
@@ -57,12 +57,12 @@ impl<const BLOCK_LENGTH: usize> Noise<BLOCK_LENGTH> {
     }
 
     /// Forgets the last values, because the next one does not follow them evenly.
-    pub(super) fn interrupt(&mut self) {
+    pub(crate) fn interrupt(&mut self) {
         self.n_last = 0;
     }
 
     /// Standard deviation, zero before the first block is full.
-    pub(super) fn sd(&self) -> f64 {
+    pub(crate) fn sd(&self) -> f64 {
         let mut sorted: Vec<f64> = self.blocks.iter().copied().collect();
         sorted.sort_by(f64::total_cmp);
         sorted.get(sorted.len() / 2).map_or(0.0, |variance| variance.sqrt())

@@ -74,7 +74,8 @@ impl Records {
         if self.still.len() == N_STILL {
             self.still.pop_front();
         }
-        self.still.push_back(Still { start_s, end_s, roll_rad, force });
+        let roll_sd_rad = self.roll.sd(start_s, end_s, roll_rad);
+        self.still.push_back(Still { start_s, end_s, roll_rad, roll_sd_rad, force });
     }
 
     /// The last still stretch before `start_s` in which the roll was within `reach_rad` of

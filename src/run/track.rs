@@ -98,6 +98,14 @@ impl Track {
         self.bins.range(from..to).copied()
     }
 
+    /// Standard deviation of the samples from `start_s` to `end_s` about `mean`.
+    pub(super) fn sd(&self, start_s: f64, end_s: f64, mean: f64) -> f64 {
+        let from = self.time_s.partition_point(|&t| t < start_s);
+        let to = self.time_s.partition_point(|&t| t <= end_s).max(from);
+        let squares = self.value.range(from..to).map(|value| (value - mean).powi(2));
+        (squares.sum::<f64>() / (to - from).max(1) as f64).sqrt()
+    }
+
     /// Mean of the bins from `start_s` to `end_s`, where there are any.
     pub(super) fn mean(&self, start_s: f64, end_s: f64) -> Option<f64> {
         let bins = self.bins(start_s, end_s);

@@ -10,7 +10,7 @@ const { chromium } = require("playwright-core");
 const AXE = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
 
 export const [address, ...rest] = process.argv.slice(2);
-export const VIEWS = ["now", "last-run", "damping", "runs", "diagnosis", "log"];
+export const VIEWS = ["now", "last-run", "damping", "runs", "plan", "diagnosis", "log"];
 
 const FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
   "--disable-background-networking", "--disable-component-update", "--disable-sync"];

@@ -48,7 +48,10 @@ pub(crate) fn covered(campaign: &Campaign, causes: &Value) -> Value {
             let bounds = (told["lo95"].as_f64(), told["hi95"].as_f64());
             if let (Some(truth), (Some(low), Some(high))) = (truth, bounds) {
                 let inside = (low..=high).contains(&truth);
-                hits.push(json!({ "symbol": symbol, "truth": truth, "inside": inside }));
+                let (mean, sd) = (&told["mean"], &told["sd"]);
+                hits.push(json!({
+                    "symbol": symbol, "truth": truth, "mean": mean, "sd": sd, "inside": inside,
+                }));
             }
         }
     }

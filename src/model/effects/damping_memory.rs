@@ -28,7 +28,7 @@ pub(super) const EFFECT: Effect = Effect {
 };
 
 fn slope<N: Number>(i: &Instant<'_, N>, p: &[N], z: &[N]) -> [N; MOST_LAGS] {
-    let own_rad_s = p[1] * i.run.natural_rad_s;
+    let own_rad_s = p[1] * i.natural_rad_s;
     [z[1], i.rate_rad_per_s - p[2] * z[1] - own_rad_s * own_rad_s * z[0]]
 }
 

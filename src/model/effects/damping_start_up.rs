@@ -22,5 +22,5 @@ pub(super) const EFFECT: Effect = Effect {
 };
 
 fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
-    p[0] * (N::from(-i.time_s) / p[1]).exp() * i.rate_rad_per_s * i.run.b1_per_s
+    p[0] * (N::from(-i.time_s) / p[1]).exp() * i.rate_rad_per_s * i.b1_per_s
 }

@@ -29,11 +29,11 @@ pub(super) const EFFECT: Effect = Effect {
 
 /// Rise of the surface against the tank `psi + phi`, level at release, and the surface's rate.
 fn slope<N: Number>(i: &Instant<'_, N>, p: &[N], z: &[N]) -> [N; MOST_LAGS] {
-    let own_rad_s = p[1] * i.run.natural_rad_s;
+    let own_rad_s = p[1] * i.natural_rad_s;
     let rate = z[1];
     [rate + i.rate_rad_per_s, -p[2] * own_rad_s * rate * 2.0 - own_rad_s * own_rad_s * z[0]]
 }
 
 fn moment<N: Number>(i: &Instant<'_, N>, p: &[N], z: &[N]) -> N {
-    -p[0] * (z[0] - i.roll_rad) * f64::powi(i.run.natural_rad_s, 2)
+    -p[0] * (z[0] - i.roll_rad) * i.natural_rad_s.powi(2)
 }

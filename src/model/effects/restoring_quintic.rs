@@ -21,5 +21,5 @@ pub(super) const EFFECT: Effect = Effect {
 };
 
 fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
-    -p[0] * i.roll_rad.powi(5) * f64::powi(i.run.natural_rad_s, 2)
+    -p[0] * i.roll_rad.powi(5) * i.natural_rad_s.powi(2)
 }

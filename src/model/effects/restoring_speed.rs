@@ -21,5 +21,5 @@ pub(super) const EFFECT: Effect = Effect {
 };
 
 fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
-    -p[0] * i.roll_rad * (i.run.natural_rad_s * i.run.froude / 0.4).powi(2)
+    -p[0] * i.roll_rad * (i.natural_rad_s * (i.run.froude / 0.4)).powi(2)
 }

@@ -2,12 +2,12 @@
 
 use maud::{Markup, html};
 
-use super::{CampaignPage, inertia::FROUDE_APART};
+use super::CampaignPage;
 use crate::report::document::{
     number_cell, run_link, section, short_estimate_cell, table, typeset,
 };
 use crate::report::number::{fixed, mean_within};
-use crate::results::IdentifiedRun;
+use crate::results::{IdentifiedRun, by_speed};
 use crate::run::RunKind;
 
 pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
@@ -56,12 +56,6 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
             }
         },
     ))
-}
-
-/// The runs of one condition, those at one nominal Froude number together, slowest first.
-fn by_speed(mut runs: Vec<&IdentifiedRun>) -> Vec<Vec<&IdentifiedRun>> {
-    runs.sort_by(|a, b| a.froude.total_cmp(&b.froude));
-    runs.chunk_by(|a, b| b.froude - a.froude <= FROUDE_APART).map(<[_]>::to_vec).collect()
 }
 
 /// One row per decay; forced runs stand in the first, or alone where there is no decay.

@@ -2,10 +2,11 @@
 
 use maud::{Markup, html};
 
-use super::{CampaignPage, groups, inertia::FROUDE_APART};
+use super::{CampaignPage, groups};
 use crate::report::document::section;
 use crate::report::figure::Axis;
 use crate::report::number::fixed;
+use crate::results::FROUDE_APART;
 
 pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
     let figures: Vec<_> = page

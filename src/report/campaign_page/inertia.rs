@@ -6,9 +6,7 @@ use super::{CampaignPage, groups};
 use crate::report::document::section;
 use crate::report::figure::Axis;
 use crate::report::number::fixed;
-
-/// Froude numbers further apart than this [-] were meant to differ.
-pub(super) const FROUDE_APART: f64 = 0.012;
+use crate::results::FROUDE_APART;
 
 /// Least width of the axis over the largest value: smaller differences are no trend.
 const WIDTH: f64 = 0.1;

@@ -9,12 +9,14 @@ mod equivalent_damping;
 mod forced_damping;
 mod forced_runs;
 mod froude_law;
+mod gates;
 mod groups;
 mod inertia;
 mod law_gaps;
 mod losses;
 mod particulars;
 mod peak_moment;
+mod plan;
 mod recordings_to_judge;
 mod rejected;
 mod runs;
@@ -28,7 +30,7 @@ use crate::inverse::identification::ForcedResponse;
 use crate::results::{IdentifiedRun, Results};
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&CampaignPage) -> Option<Markup>; 16] = [
+const PARTS: [fn(&CampaignPage) -> Option<Markup>; 18] = [
     at_speeds::part,
     diagnosis::part,
     law_gaps::part,
@@ -42,6 +44,8 @@ const PARTS: [fn(&CampaignPage) -> Option<Markup>; 16] = [
     forced_damping::part,
     inertia::part,
     peak_moment::part,
+    plan::part,
+    gates::part,
     rejected::part,
     recordings_to_judge::part,
     losses::part,
@@ -90,6 +94,12 @@ pub(super) fn live_parts(page: &CampaignPage) -> Markup {
     let parts =
         [at_speeds::part, damping_against_froude::part, froude_law::part, equivalent_damping::part];
     html! { @for part in parts { @if let Some(part) = part(page) { (part) } } }
+}
+
+/// The test plan with what is done of it, and what the procedure says of the whole campaign.
+pub(super) fn plan_parts(page: &CampaignPage) -> Option<Markup> {
+    let (plan, gates) = (plan::part(page)?, gates::part(page));
+    Some(html! { (plan) @if let Some(gates) = gates { (gates) } })
 }
 
 /// The page of the campaign.

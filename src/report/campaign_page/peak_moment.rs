@@ -2,10 +2,11 @@
 
 use maud::{Markup, html};
 
-use super::{CampaignPage, groups, inertia::FROUDE_APART};
+use super::{CampaignPage, groups};
 use crate::report::document::section;
 use crate::report::figure::{Axis, Figure};
 use crate::report::number::fixed;
+use crate::results::FROUDE_APART;
 
 /// Frequencies further apart than this [rad/s] were meant to differ.
 const FREQUENCY_APART_RAD_S: f64 = 0.05;

@@ -4,7 +4,6 @@ use maud::{Markup, html};
 
 use super::CampaignPage;
 use crate::report::document::{estimate_cell, number_cell, run_link, section, table};
-use crate::report::json::kind_name;
 use crate::report::number::{fixed, significant};
 
 pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
@@ -21,7 +20,7 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
             let rmse = identification.resimulation.rmse_rad.to_degrees();
             html! {
                 td { a href=(run_link(&run.id)) { (run.id) } }
-                td.number { (kind_name(run.run.kind)) }
+                td.number { (run.run.kind.name()) }
                 td { (run.condition) }
                 (number_cell(&fixed(run.froude, 3)))
                 (estimate_cell(Some(&identification.natural_frequency_rad_s)))

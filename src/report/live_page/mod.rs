@@ -4,6 +4,8 @@ mod damping;
 mod diagnosis;
 mod last_run;
 mod latest;
+mod next;
+mod plan;
 mod runs;
 mod verdict;
 
@@ -15,12 +17,14 @@ use crate::diagnosis::Diagnosis;
 use crate::results::Results;
 
 /// Every part by the name of its place on the page.
-const PARTS: [(&str, fn(&CampaignPage) -> Markup); 6] = [
+const PARTS: [(&str, fn(&CampaignPage) -> Markup); 8] = [
     ("latest", latest::part),
     ("verdict", verdict::part),
     ("last-run", last_run::part),
     ("damping", damping::part),
     ("runs", runs::part),
+    ("next", next::part),
+    ("plan", plan::part),
     ("diagnosis", diagnosis::part),
 ];
 

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use crate::report::campaign_page::CampaignPage;
 use crate::report::document::{number_cell, run_link, section, short_estimate_cell, table};
-use crate::report::json::kind_name;
+
 use crate::report::number::fixed;
 use crate::results::{IdentifiedRun, RejectedStretch};
 
@@ -41,7 +41,7 @@ fn row(page: &CampaignPage, run: &IdentifiedRun) -> Markup {
     let damping = units.work_damping_per_s().or(at_five);
     html! {
         td.name { a href={ "/results/" (run_link(&run.id)) } { (run.id) } }
-        td { (kind_name(run.run.kind)) }
+        td { (run.run.kind.name()) }
         td { (run.condition) }
         (number_cell(&fixed(run.froude, 3)))
         (short_estimate_cell(damping.as_ref()))

@@ -1,4 +1,4 @@
-//! What the simulation gets wrong and what to tow next, in two lines.
+//! What the simulation gets wrong, in a line.
 
 use maud::{Markup, html};
 
@@ -15,9 +15,6 @@ pub(super) fn part(page: &CampaignPage) -> Markup {
         p {
             b { (word(diagnosis.verdict)) } ": " (meaning(diagnosis.verdict))
             @if !causes.is_empty() { ": " (causes.join(", ")) }
-        }
-        @if let Some(next) = &diagnosis.next_run {
-            p { b { "Suggested next: " } (next.why) }
         }
     }
 }

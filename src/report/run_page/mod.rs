@@ -6,6 +6,7 @@ mod equivalent_damping;
 mod facts;
 mod forced;
 mod forms;
+mod gates;
 mod law_gaps;
 mod least_squares;
 mod moment;
@@ -26,7 +27,7 @@ use crate::results::{IdentifiedRun, Overview, RejectedStretch};
 use crate::run::RunKind;
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&RunPage) -> Option<Markup>; 16] = [
+const PARTS: [fn(&RunPage) -> Option<Markup>; 17] = [
     law_gaps::part,
     facts::part,
     record::part,
@@ -42,6 +43,7 @@ const PARTS: [fn(&RunPage) -> Option<Markup>; 16] = [
     observable::part,
     least_squares::part,
     chain::part,
+    gates::part,
     remarks::part,
 ];
 
@@ -66,7 +68,8 @@ impl<'a> RunPage<'a> {
 
 /// The parts that the live page shows of the run that ended last.
 pub(super) fn live_parts(page: &RunPage) -> Markup {
-    let parts = [equivalent_damping::part, coefficients::part, forced::part, remarks::part];
+    let parts =
+        [equivalent_damping::part, coefficients::part, forced::part, gates::part, remarks::part];
     html! { @for part in parts { @if let Some(part) = part(page) { (part) } } }
 }
 
