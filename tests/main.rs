@@ -40,6 +40,7 @@ mod synthetic_roll;
 mod the_band_is_sharp;
 mod the_command_line;
 mod the_daemon_is_watched_and_told_to_reload;
+mod the_demo_is_seen_from_first_sample_to_report;
 mod the_exact_posterior_is_the_dense_one;
 mod the_hidden_tank_is_sound;
 mod the_json_contract_holds;

@@ -7,7 +7,7 @@ use std::thread::{self, JoinHandle};
 
 use devices::clock::WallClock;
 use replay::{ClosedRecording, Finished, ReplayError};
-use tokio::runtime::{Builder, Runtime};
+use tokio::runtime::Runtime;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::mpsc;
 
@@ -19,7 +19,7 @@ use super::supervisor::Supervisor;
 use super::under_way::Ended;
 use crate::campaign::{self, Campaign, FILE_NAME};
 use crate::judgement::Judgements;
-use crate::page::{Board, Listen, Order, Orders, Served, serve};
+use crate::page::{Board, Listen, Order, Orders, Served, runtime, serve};
 use crate::pipeline;
 use crate::results::Results;
 
@@ -45,7 +45,8 @@ pub fn run(
     (sender, mut orders): (Orders, mpsc::Receiver<Order>),
     board: &Board,
 ) -> Result<Option<Results>, LiveError> {
-    let runtime = runtime()?;
+    let runtime =
+        runtime().map_err(|source| LiveError::System { what: "runtime".to_owned(), source })?;
     listen_to_signals(&runtime, &sender)?;
     let mut campaign = live_campaign(&options.folder)?;
     board.judge(|judgements| judgements.clone_from(&campaign.judgements));
@@ -155,12 +156,6 @@ fn joined(thread: Conversion) -> Result<(), LiveError> {
         }
         Err(panic) => std::panic::resume_unwind(panic),
     }
-}
-
-/// The runtime of signals, timers and sockets: one thread beside the loop's.
-fn runtime() -> Result<Runtime, LiveError> {
-    let built = Builder::new_multi_thread().worker_threads(1).enable_all().build();
-    built.map_err(|source| LiveError::System { what: "runtime".to_owned(), source })
 }
 
 /// Turns SIGTERM, SIGINT and SIGHUP into orders.

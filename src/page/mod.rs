@@ -25,7 +25,7 @@ pub use board::{Board, Shown};
 pub use motion::Motion;
 pub use order::{Order, Orders, orders};
 pub use pass::Pass;
-pub use server::{Listen, ServeError, Served, serve};
+pub use server::{Listen, ServeError, Served, runtime, serve};
 pub use stamp::{stamp, stamp_of_now};
 pub use status::Status;
 pub use strips::Strips;

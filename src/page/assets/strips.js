@@ -94,7 +94,8 @@ class Strip {
     this.view = { now, windowS, marks };
     const track = windowS > FINE_S ? this.coarse : this.fine;
     if (!this.chart) this.chart = this.make();
-    this.chart.setData([track.x, track.y]);
+    // At once, not in a later turn: what a frame costs is to be known.
+    this.chart.batch(() => this.chart.setData([track.x, track.y]));
   }
 
   make() {

@@ -22,7 +22,7 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use serde::Serialize;
 use tokio::net::TcpListener;
-use tokio::runtime::Runtime;
+use tokio::runtime::{Builder, Runtime};
 
 use super::board::Board;
 use super::order::Orders;
@@ -87,6 +87,14 @@ pub struct Served {
 
 /// Largest body of a request [bytes]: a note of some lines.
 const BODY_MAX: usize = 16 * 1024;
+
+/// The runtime of signals, timers and sockets: one thread beside the daemon's own.
+///
+/// # Errors
+/// What the system said.
+pub fn runtime() -> io::Result<Runtime> {
+    Builder::new_multi_thread().worker_threads(1).enable_all().build()
+}
 
 /// Serves until the runtime ends; the address, which is told where port 0 was asked for.
 ///

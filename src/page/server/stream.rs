@@ -137,3 +137,40 @@ impl futures_core::Stream for Socket {
         self.0.poll_recv(context).map(|event| event.map(Ok))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_that_is_passed_by_the_ring_is_told_everything_anew_and_the_ring_never_waits() {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap();
+        runtime.block_on(async {
+            let board = Board::default();
+            let (ring, _) = broadcast::channel(RING);
+            let places = Arc::new(Semaphore::new(1));
+            let stream = Stream { board, ring: ring.clone(), places };
+            let place = Arc::clone(&stream.places).try_acquire_owned().unwrap();
+            let (sender, mut socket) = mpsc::channel(ON_THE_WAY);
+            tokio::spawn(pass_on(stream.clone(), ring.subscribe(), sender, place));
+            for number in 0..10 * RING {
+                ring.send(Bytes::from(format!("{number}"))).unwrap();
+                tokio::task::yield_now().await;
+            }
+            let mut told = Vec::new();
+            for _ in 0..2 * ON_THE_WAY + 2 {
+                told.push(socket.recv().await.unwrap());
+                tokio::task::yield_now().await;
+                ring.send(Bytes::from("after")).unwrap();
+            }
+            let is_greeting = |text: &Bytes| text.starts_with(b"retry: ");
+            assert!(is_greeting(&told[0]));
+            assert_eq!(told[1..].iter().filter(|text| is_greeting(text)).count(), 1, "{told:?}");
+            assert!(told.last().is_some_and(|text| text == "after"), "{told:?}");
+            drop(socket);
+            ring.send(Bytes::new()).ok();
+            tokio::task::yield_now().await;
+            assert!(stream.places.try_acquire().is_ok(), "a page that is gone leaves its place");
+        });
+    }
+}
