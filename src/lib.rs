@@ -12,6 +12,8 @@ pub mod settling;
 
 pub mod model;
 
+pub mod judgement;
+
 pub mod campaign;
 
 pub mod inverse;
@@ -33,6 +35,8 @@ pub mod catalogue;
 pub mod report;
 
 pub mod pipeline;
+
+pub mod page;
 
 pub mod live;
 

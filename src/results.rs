@@ -56,6 +56,8 @@ pub struct RejectedStretch {
     pub end_s: f64,
     /// The reason, as a sentence with its values and limits.
     pub reason: String,
+    /// Id of the run that it is, when it was rejected by hand.
+    pub run: Option<String>,
 }
 
 /// A whole recording, thinned for drawing: lowest and highest value of each stretch.

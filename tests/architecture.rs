@@ -5,11 +5,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The layers of `src`, top first; each may name those below it.
-const LAYERS: [&str; 20] = [
+const LAYERS: [&str; 22] = [
     "main",
     "command",
     "bench",
     "live",
+    "page",
     "pipeline",
     "report",
     "catalogue",
@@ -21,6 +22,7 @@ const LAYERS: [&str; 20] = [
     "results",
     "inverse",
     "campaign",
+    "judgement",
     "model",
     "settling",
     "run",
@@ -29,7 +31,7 @@ const LAYERS: [&str; 20] = [
 ];
 
 /// Crates that only some layers or workspace members may name, each with its owners.
-const OWNERS: [(&str, &[&str]); 24] = [
+const OWNERS: [(&str, &[&str]); 25] = [
     ("clap", &["src/main", "src/command"]),
     ("indicatif", &["src/command"]),
     ("tracing_subscriber", &["src/main"]),
@@ -56,11 +58,12 @@ const OWNERS: [(&str, &[&str]); 24] = [
     ),
     ("csv", &["src/campaign/plan_table", "src/report", "replay/src"]),
     ("mcap", &["replay/src"]),
-    ("tokio", &["src/live"]),
-    ("axum", &["src/live"]),
-    ("prometheus_client", &["src/live"]),
+    ("tokio", &["src/live", "src/page"]),
+    ("axum", &["src/page"]),
+    ("prometheus_client", &["src/page"]),
+    ("futures_core", &["src/page"]),
     ("sd_notify", &["src/live"]),
-    ("jiff", &["src/live"]),
+    ("jiff", &["src/page"]),
     ("serialport", &["devices/src/port"]),
     ("thread_priority", &["devices/src/realtime"]),
     ("rustix", &["devices/src/emulator", "replay/src/recorder/disk"]),

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 use std::path::PathBuf;
-use std::sync::LazyLock;
 
+use crate::synthetic_roll::{STEP_S, Truth};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use replay::Columns;
@@ -17,8 +17,6 @@ use rolltank::inverse::identification::{
 use rolltank::results::{IdentifiedRun, Overview, RejectedStretch, Results, Sampling};
 use rolltank::roll::exciting_moment::{Arm, Exciter};
 use rolltank::run::{Run, RunEnd, RunKind, Series, Still};
-
-use crate::synthetic_roll::{STEP_S, Truth};
 
 /// Noise of the roll channel [rad].
 const NOISE_RAD: f64 = 0.000_9;
@@ -65,6 +63,7 @@ pub(crate) fn campaign(name: &str) -> Campaign {
         columns: Columns::default(),
         recordings,
         model: None,
+        judgements: rolltank::judgement::Judgements::default(),
         live: Live::default(),
         plan: Plan::default(),
     }
@@ -72,7 +71,7 @@ pub(crate) fn campaign(name: &str) -> Campaign {
 
 /// Decays and forced runs of both conditions at every Froude number, from one seed.
 pub(crate) fn results() -> Results {
-    static RESULTS: LazyLock<Results> = LazyLock::new(simulated);
+    static RESULTS: std::sync::LazyLock<Results> = std::sync::LazyLock::new(simulated);
     RESULTS.clone()
 }
 
@@ -98,6 +97,7 @@ fn simulated() -> Results {
                 start_s: run.run.end_s + 1.0,
                 end_s: run.run.end_s + 4.0,
                 reason: "the carriage brakes: speed falls by 0.8 m/s, the limit is 0.02".to_owned(),
+                run: None,
             });
             results.runs.push(run);
             for (kind, ratio) in [0.74, 0.9, 1.0, 1.1].into_iter().enumerate() {

@@ -182,19 +182,6 @@ fn wrong_usage_ends_with_two_and_help_with_zero() {
 }
 
 #[test]
-fn the_demo_reports_the_papers_campaign_in_a_folder_of_its_own() {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::create_dir(folder.path().join("rolltank-demo")).unwrap();
-    let told = rolltank(folder.path(), &["demo"]);
-    assert!([0, 3].contains(&told.exit), "{}", told.err);
-    for words in ["bare hull", "bilge keels", "kappa = ", "report: rolltank-demo-2/results/"] {
-        assert!(told.out.contains(words), "{words} is not in:\n{}", told.out);
-    }
-    assert!(folder.path().join("rolltank-demo-2/results/index.html").is_file());
-    assert_eq!(std::fs::read_dir(folder.path().join("rolltank-demo")).unwrap().count(), 0);
-}
-
-#[test]
 fn the_errata_of_the_paper_are_told_for_people_and_programs() {
     let folder = tempfile::tempdir().unwrap();
     let text = rolltank(folder.path(), &["reference"]);

@@ -1,46 +1,33 @@
 //! Health, metrics and status over HTTP, reloads by SIGHUP, and what systemd hears.
 
-use std::io::{Read, Write};
-use std::net::TcpStream;
 use std::os::unix::net::UnixDatagram;
 use std::time::Duration;
 
 use clap::Parser;
 use rolltank::command::CommandLine;
 
+use super::http::{self, Answer};
 use super::live_tank::{Daemon, LiveTank};
 
-/// The address that the daemon's log names.
-fn address(daemon: &mut Daemon) -> String {
-    daemon.wait_for("serving /healthz", 1);
-    let said = daemon.said();
-    let after = said.split("address=").nth(1).expect("the address is told");
-    after.split_whitespace().next().expect("an address").trim_matches('"').to_owned()
+/// The answer to a request, with a token where one is given.
+fn get(address: &str, path: &str, token: Option<&str>) -> Answer {
+    let bearer = token.map(|token| format!("Bearer {token}"));
+    let header = bearer.as_deref().map(|bearer| ("Authorization", bearer));
+    http::get(address, path, header.as_slice())
 }
 
-/// Status line, headers and body of the answer to a request.
-fn get(address: &str, path: &str, token: Option<&str>) -> String {
-    let mut stream = TcpStream::connect(address).expect("the daemon listens");
-    let token = token.map_or(String::new(), |token| format!("Authorization: Bearer {token}\r\n"));
-    write!(stream, "GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n{token}\r\n")
-        .expect("it takes a request");
-    let mut answer = String::new();
-    stream.read_to_string(&mut answer).expect("it answers");
-    answer
-}
-
-fn is_ok(answer: &str) -> bool {
-    answer.starts_with("HTTP/1.1 200")
+fn is_ok(answer: &Answer) -> bool {
+    answer.status == 200
 }
 
 #[test]
 fn health_readiness_and_gauges_follow_the_instruments() {
     let tank = LiveTank::at_speed(1.0);
     let mut daemon = Daemon::start(&tank, &[]);
-    let address = address(&mut daemon);
+    let address = daemon.address();
     assert!(is_ok(&get(&address, "/healthz", None)));
     daemon.wait_until("ready", || is_ok(&get(&address, "/readyz", None)));
-    let gauges = get(&address, "/metrics", None);
+    let gauges = get(&address, "/metrics", None).body;
     for line in [
         "rolltank_device_linked{device=\"potentiometer\"} 1.0",
         "rolltank_samples_total{device=\"carriage\",channel=\"speed\",outcome=\"lost\"} 0.0",
@@ -53,13 +40,12 @@ fn health_readiness_and_gauges_follow_the_instruments() {
     tank.port(0).unplug();
     daemon.wait_until("unready", || !is_ok(&get(&address, "/readyz", None)));
     let told = get(&address, "/readyz", None);
-    assert!(told.starts_with("HTTP/1.1 503") && told.contains("potentiometer"), "{told}");
+    assert!(told.status == 503 && told.body.contains("potentiometer"), "{told:?}");
     assert!(is_ok(&get(&address, "/healthz", None)), "the daemon itself is well");
     tank.port(0).replug();
     daemon.wait_until("ready again", || is_ok(&get(&address, "/readyz", None)));
     let status = get(&address, "/status", None);
-    let body = status.split("\r\n\r\n").nth(1).expect("a body");
-    let status: serde_json::Value = serde_json::from_str(body).expect("JSON");
+    let status: serde_json::Value = serde_json::from_str(&status.body).expect("JSON");
     assert_eq!(status["schema"], "rolltank.status/1");
     assert_eq!(status["devices"][0]["n_losses"], 1, "{status}");
 }
@@ -70,9 +56,9 @@ fn a_token_is_asked_for_where_one_is_set_and_must_be_beyond_this_machine() {
     let token = tank.path().join("token");
     std::fs::write(&token, "open sesame\n").unwrap();
     let mut daemon = Daemon::start(&tank, &["--token-file", "token"]);
-    let address = address(&mut daemon);
+    let address = daemon.address();
     for wrong in [None, Some("open"), Some("open sesame!")] {
-        assert!(get(&address, "/healthz", wrong).starts_with("HTTP/1.1 401"), "{wrong:?}");
+        assert_eq!(get(&address, "/healthz", wrong).status, 401, "{wrong:?}");
     }
     assert!(is_ok(&get(&address, "/healthz", Some("open sesame"))));
     daemon.terminate();
@@ -114,26 +100,14 @@ fn a_zero_is_taken_from_the_daemon_itself_and_in_force_from_the_next_rest_on() {
     // The model rests for the first six seconds of a round.
     let tank = LiveTank::at_speed(1.0);
     let mut daemon = Daemon::start(&tank, &[]);
-    let address = address(&mut daemon);
+    let address = daemon.address();
     daemon.wait_until("ready", || is_ok(&get(&address, "/readyz", None)));
     std::thread::sleep(Duration::from_millis(500));
     let body = "{\"by\": \"C. Costa\", \"note\": \"calm water\"}";
-    let post = |kind: &str| {
-        let mut stream = TcpStream::connect(&address).expect("the daemon listens");
-        let length = body.len();
-        write!(
-            stream,
-            "POST /zero HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\
-             Content-Type: {kind}\r\nContent-Length: {length}\r\n\r\n{body}"
-        )
-        .expect("it takes a request");
-        let mut answer = String::new();
-        stream.read_to_string(&mut answer).expect("it answers");
-        answer
-    };
-    assert!(post("text/plain").starts_with("HTTP/1.1 415"), "a page could have sent that");
+    let post = |kind: &str| http::post(&address, "/zero", &[("Content-Type", kind)], body);
+    assert_eq!(post("text/plain").status, 415, "a page could have sent that");
     let answer = post("application/json");
-    assert!(is_ok(&answer) && answer.contains("roll of potentiometer: zero "), "{answer}");
+    assert!(is_ok(&answer) && answer.body.contains("roll of potentiometer: zero "), "{answer:?}");
     assert!(tank.text("calibrations.toml").contains("by = \"C. Costa\""));
     daemon.wait_for("linked", 4);
     let (status, said) = daemon.terminate();

@@ -24,7 +24,7 @@ pub fn report_latency(folder: &Path) -> Result<Vec<Figure>, LiveError> {
         n_forced += usize::from(pass.actions.iter().any(is_forced));
         pass.condition == bare && n_forced <= 3
     });
-    let ended = live::virtual_day(&scenario, 1, folder, SPEED, &mut |_| {})?;
+    let ended = live::virtual_day(&scenario, 1, folder, (SPEED, None), &mut |_| {})?;
     let mut latencies_s = ended.status.runs.latencies_s;
     latencies_s.sort_by(f64::total_cmp);
     let figure = |name: &str, value: Option<&f64>| Figure {

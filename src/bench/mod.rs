@@ -4,6 +4,7 @@ pub mod calibration;
 pub mod diagnosis;
 pub mod drawn_run;
 pub mod live;
+pub mod page;
 pub mod paper_hyperpriors;
 pub mod ranks;
 pub mod speed;

@@ -2,6 +2,7 @@
 
 mod calibrations;
 mod columns;
+mod judged;
 mod live;
 mod mistake;
 mod particulars;
@@ -20,6 +21,7 @@ use devices::setup::{DeviceConfig, DeviceSetup};
 use replay::Columns;
 
 use crate::hull::{Hull, Water};
+use crate::judgement::Judgements;
 use crate::model::model_file::ModelFile;
 use crate::roll::exciting_moment::Exciter;
 
@@ -50,6 +52,8 @@ pub struct Campaign {
     pub recordings: Vec<Recording>,
     /// The simulation model that a diagnosis extended, where one was written.
     pub model: Option<ModelFile>,
+    /// What people have judged of its runs.
+    pub judgements: Judgements,
     /// The instruments of the tank, where there are such.
     pub live: Live,
     /// The runs that are asked for, in the order in which they are to be made.

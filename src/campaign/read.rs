@@ -8,7 +8,10 @@ use replay::Columns;
 
 use super::mistake::Mistake;
 use super::tree::{Section, Source};
-use super::{Campaign, LIVE_FOLDER, Recording, columns, live, particulars, plan, recordings};
+use super::{
+    Campaign, LIVE_FOLDER, Recording, columns, judged, live, particulars, plan, recordings,
+};
+use crate::judgement::Judgements;
 use crate::model::model_file::ModelFile;
 
 /// Name of the campaign file in its folder.
@@ -67,6 +70,10 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
     check_columns(root, columns.as_ref(), &recordings);
     check_exciter(root, &known);
     let model = model(source, folder);
+    let judgements = judged::read(folder).unwrap_or_else(|mistakes| {
+        mistakes.into_iter().for_each(|mistake| root.add(mistake));
+        Judgements::default()
+    });
     Some(Campaign {
         folder: folder.to_owned(),
         name: name.unwrap_or_else(|| folder_name(folder)),
@@ -77,6 +84,7 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
         columns: known,
         recordings,
         model,
+        judgements,
         live,
         plan,
     })

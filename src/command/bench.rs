@@ -3,13 +3,14 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 
 use super::{Exit, Failure};
 use crate::bench::ranks::Ranks;
 use crate::bench::speed::{self, Figure};
-use crate::bench::{Calibration, calibrate, diagnosis, live, machine};
+use crate::bench::{Calibration, calibrate, diagnosis, live, machine, page};
 
 /// Measure speed and memory on this machine, and how often the bands hold the truth
 #[derive(Debug, Args)]
@@ -23,6 +24,9 @@ pub(super) struct Arguments {
     /// Seed of the drawn runs
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Seconds for which the page of eight channels is left open for a browser
+    #[arg(long, value_name = "SECONDS", default_value_t = 0)]
+    hold: u64,
     /// Folder in which the campaign of a thousand runs, or that to be diagnosed, is written and
     /// left; new or empty
     #[arg(long, value_name = "FOLDER", required_if_eq("subject", "diagnosis"))]
@@ -35,6 +39,8 @@ enum Subject {
     Speed,
     /// From the end of a run to its report, at a virtual tank
     Live,
+    /// Bytes to the live page, and processor time by the number of pages
+    Page,
     /// Coverage and rank histograms over drawn runs
     Calibration,
     /// Time of a diagnosis of twelve passes, and of one run
@@ -54,6 +60,15 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     }
     if matches!(arguments.subject, Subject::Live | Subject::All) {
         told(out, latency()?)?;
+        writeln!(out)?;
+    }
+    if matches!(arguments.subject, Subject::Page | Subject::All) {
+        let hold = Duration::from_secs(arguments.hold);
+        let figures = page::page(hold, &mut |address| {
+            writeln!(out, "page of eight channels: http://{address}/")?;
+            out.flush()
+        })?;
+        told(out, figures)?;
         writeln!(out)?;
     }
     if matches!(arguments.subject, Subject::Speed | Subject::All) {

@@ -89,5 +89,5 @@ pub(super) fn keep(folder: &Path, taken: TakenCalibration) -> Result<(), Failure
 
 /// Date and time, as it stands in a calibration.
 pub(super) fn now() -> String {
-    crate::live::stamp(&WallClock::start(), 0, "%Y-%m-%d %H:%M:%S UTC")
+    crate::page::stamp_of_now()
 }

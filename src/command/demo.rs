@@ -1,6 +1,7 @@
 //! `rolltank demo`: a day in the virtual tank, from serial ports to the report, without hardware.
 
 use std::io::Write;
+use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -10,6 +11,7 @@ use super::terminal::Terminal;
 use super::{Exit, Failure, tables};
 use crate::campaign;
 use crate::live::{self, DayProgress};
+use crate::page::Listen;
 use crate::pipeline;
 use crate::tank::Scenario;
 
@@ -22,6 +24,9 @@ pub(super) struct Arguments {
     /// Seconds of the tank that pass in one second
     #[arg(long, value_name = "X", default_value_t = 20.0, value_parser = super::positive)]
     speed: f64,
+    /// Address and port of the page; port 0 is any free one
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:0")]
+    listen: SocketAddr,
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -34,12 +39,21 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     writeln!(out, "campaign: {} (virtual tank)", folder.display())?;
     out.flush()?;
     let terminal = Terminal::new();
+    let mut is_told = false;
     let ended = live::virtual_day(
         &scenario,
         arguments.seed,
         &folder,
-        arguments.speed,
+        (arguments.speed, Some(Listen { address: arguments.listen, token: None })),
         &mut |DayProgress { played_s, total_s, status }| {
+            if let Some(page) = status.page.filter(|_| !std::mem::replace(&mut is_told, true)) {
+                let told = terminal.pause(|| {
+                    writeln!(out, "page while the day lasts: http://{page}/")?;
+                    out.flush()
+                });
+                // Who cannot read it is told so by what follows.
+                told.ok();
+            }
             let (condition, n_runs) = (&status.condition, status.runs.n_identified);
             let message = format!("{condition}, {n_runs} runs");
             terminal.show(played_s as u64, total_s as u64, message);

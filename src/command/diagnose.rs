@@ -33,6 +33,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
         observed.hear(run, &campaign);
         Ok(())
     })?;
+    let observed = observed.judged(&campaign.judgements);
     for reason in observed.left_out() {
         tracing::warn!("left out of the diagnosis: {reason}");
     }

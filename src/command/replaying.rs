@@ -60,6 +60,7 @@ pub(super) fn replay(
     )?;
     drop(terminal);
     if let Some(dir) = into {
+        let observed = observed.judged(&campaign.judgements);
         for reason in observed.left_out() {
             tracing::warn!("left out of the diagnosis: {reason}");
         }

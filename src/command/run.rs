@@ -9,7 +9,8 @@ use clap::{Args, ValueEnum};
 use devices::clock::WallClock;
 
 use super::{Exit, Failure, tables};
-use crate::live::{self, DaemonOptions, Listen, SharedStatus};
+use crate::live::{self, DaemonOptions};
+use crate::page::{Board, Listen, orders};
 
 /// Seconds in a minute.
 const MINUTE_S: f64 = 60.0;
@@ -22,7 +23,7 @@ pub(super) struct Arguments {
     /// Minutes after which a recording gives way to the next, at the first rest of the model
     #[arg(long, value_name = "MINUTES", default_value_t = 30.0, value_parser = super::positive)]
     rotate: f64,
-    /// Address and port of /healthz, /readyz, /metrics and /status
+    /// Address and port of the page, of /healthz, /readyz, /metrics and /status
     #[arg(long, value_name = "ADDRESS", default_value = Listen::DEFAULT)]
     listen: SocketAddr,
     /// File whose first line requests must carry as `Authorization: Bearer ...`
@@ -63,8 +64,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
         listen: Some(Listen { address: arguments.listen, token: token(arguments)? }),
     };
     let clock = Arc::new(WallClock::start_at_speed(arguments.clock_speed));
-    let status = SharedStatus::default();
-    let results = live::run(&options, &clock, live::orders(), &status)?;
+    let results = live::run(&options, &clock, orders(), &Board::default())?;
     if let Some(results) = results {
         tables::human(out, &results)?;
     }

@@ -12,8 +12,8 @@ use replay::{
 };
 
 use super::error::LiveError;
-use super::status::{ChannelStatus, DeviceStatus, RecentRaw};
 use super::tally::Tally;
+use crate::page::status::{ChannelStatus, DeviceStatus, RecentRaw};
 
 /// A device of the session.
 pub(super) struct Attached {

@@ -7,20 +7,20 @@ use std::thread::{self, JoinHandle};
 
 use devices::clock::WallClock;
 use replay::{ClosedRecording, Finished, ReplayError};
-use tokio::runtime::{Builder, Runtime};
+use tokio::runtime::Runtime;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::mpsc;
 
 use super::diagnosing::Diagnoser;
 use super::error::LiveError;
-use super::event::{Order, Orders};
-use super::health::{Listen, serve};
 use super::keeping::recover;
 use super::session::{self, Lent, Plan};
-use super::status::SharedStatus;
 use super::supervisor::Supervisor;
 use super::under_way::Ended;
 use crate::campaign::{self, Campaign, FILE_NAME};
+use crate::judgement::Judgements;
+use crate::page::{Board, Listen, Order, Orders, Served, runtime, serve};
+use crate::pipeline;
 use crate::results::Results;
 
 /// How the daemon works.
@@ -30,7 +30,7 @@ pub struct DaemonOptions {
     pub folder: PathBuf,
     /// Age [s] at which a recording gives way to the next when the model is at rest.
     pub rotate_s: f64,
-    /// Where health and metrics are served, if anywhere.
+    /// Where the page is served, if anywhere.
     pub listen: Option<Listen>,
 }
 
@@ -43,13 +43,18 @@ pub fn run(
     options: &DaemonOptions,
     clock: &Arc<WallClock>,
     (sender, mut orders): (Orders, mpsc::Receiver<Order>),
-    status: &SharedStatus,
+    board: &Board,
 ) -> Result<Option<Results>, LiveError> {
-    let runtime = runtime()?;
+    let runtime =
+        runtime().map_err(|source| LiveError::System { what: "runtime".to_owned(), source })?;
     listen_to_signals(&runtime, &sender)?;
     let mut campaign = live_campaign(&options.folder)?;
+    board.judge(|judgements| judgements.clone_from(&campaign.judgements));
     if let Some(listen) = &options.listen {
-        serve(&runtime, listen, (&options.folder, status, &sender))?;
+        let (board, folder) = (board.clone(), options.folder.clone());
+        let served = Served { board: board.clone(), folder, orders: sender.clone() };
+        let page = serve(&runtime, listen, served)?;
+        board.change(|status| status.page = Some(page));
     }
     recover(&options.folder)?;
     // What was recovered is a recording of the campaign now.
@@ -57,8 +62,9 @@ pub fn run(
     let mut supervisor = Supervisor::new();
     let mut text = text_of(&options.folder)?;
     let mut earlier = None;
-    let mut diagnoser = Diagnoser::start(campaign.clone());
+    let mut diagnoser = Diagnoser::start(campaign.clone(), board, sender.clone());
     let mut converting = Converting::default();
+    let mut paused_by = None;
     loop {
         let plan = Plan {
             text: text.clone(),
@@ -66,28 +72,31 @@ pub fn run(
             earlier,
             diagnoser: diagnoser.clone(),
             rotate_s: options.rotate_s,
+            paused_by: paused_by.clone(),
         };
         let handle = runtime.handle();
         let lent = Lent {
             runtime: handle,
             clock,
             orders: &mut orders,
-            status,
+            board,
             supervisor: &mut supervisor,
         };
         let left = session::run(plan, lent)?;
-        converting.start(left.closed)?;
+        left.closed.map_or(Ok(()), |closed| converting.start(closed))?;
         earlier = left.results;
         match left.ended {
             Ended::Terminated => {
                 converting.finish()?;
-                return Ok(earlier);
+                return Ok(earlier.map(|found| pipeline::judged(found, &board.judgements())));
             }
             Ended::Broken => {
                 converting.finish()?;
                 return Err(LiveError::PortThread);
             }
             Ended::Rotated => campaign.recordings = left.recordings,
+            Ended::Paused(by) => (campaign.recordings, paused_by) = (left.recordings, Some(by)),
+            Ended::Resumed => (campaign.recordings, paused_by) = (left.recordings, None),
             Ended::Reloaded(new) if particulars(&new.campaign) == particulars(&campaign) => {
                 campaign = Campaign { recordings: left.recordings, ..new.campaign };
                 text = new.text;
@@ -100,7 +109,7 @@ pub fn run(
                 let recordings = read.unwrap_or(left.recordings);
                 campaign = Campaign { recordings, ..new.campaign };
                 (text, earlier) = (new.text, None);
-                diagnoser = Diagnoser::start(campaign.clone());
+                diagnoser = Diagnoser::start(campaign.clone(), board, sender.clone());
             }
         }
     }
@@ -149,12 +158,6 @@ fn joined(thread: Conversion) -> Result<(), LiveError> {
     }
 }
 
-/// The runtime of signals, timers and sockets: one thread beside the loop's.
-fn runtime() -> Result<Runtime, LiveError> {
-    let built = Builder::new_multi_thread().worker_threads(1).enable_all().build();
-    built.map_err(|source| LiveError::System { what: "runtime".to_owned(), source })
-}
-
 /// Turns SIGTERM, SIGINT and SIGHUP into orders.
 fn listen_to_signals(runtime: &Runtime, orders: &Orders) -> Result<(), LiveError> {
     let signals = [
@@ -170,7 +173,7 @@ fn listen_to_signals(runtime: &Runtime, orders: &Orders) -> Result<(), LiveError
         let orders = orders.clone();
         runtime.spawn(async move {
             while signals.recv().await.is_some() {
-                if orders.send(order).await.is_err() {
+                if orders.send(order.clone()).await.is_err() {
                     return;
                 }
             }
@@ -182,7 +185,9 @@ fn listen_to_signals(runtime: &Runtime, orders: &Orders) -> Result<(), LiveError
 /// What results depend on beside the recordings; while it stays, they need not be made again.
 fn particulars(campaign: &Campaign) -> Campaign {
     let live = campaign::Live::default();
-    Campaign { recordings: Vec::new(), live, ..campaign.clone() }
+    // What people judge is laid over results, whatever file they were made under.
+    let judgements = Judgements::default();
+    Campaign { recordings: Vec::new(), live, judgements, ..campaign.clone() }
 }
 
 fn live_campaign(folder: &Path) -> Result<Campaign, LiveError> {

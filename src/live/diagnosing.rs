@@ -7,35 +7,41 @@ use std::thread;
 
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
+use crate::page::{Board, Order, Orders};
 use crate::pipeline::{self, Observed};
 use crate::report;
 use crate::results::IdentifiedRun;
+
+/// A diagnosis that several look at.
+pub(super) type Diagnosed = Arc<Diagnosis>;
 
 /// What is known of the runs so far.
 #[derive(Default)]
 struct Known {
     observed: Observed,
-    /// Runs of the newest diagnosis.
-    n_diagnosed: usize,
-    diagnosis: Option<Arc<Diagnosis>>,
+    /// Runs heard and judgements made when the newest diagnosis was.
+    of: (usize, usize),
+    diagnosis: Option<Diagnosed>,
 }
 
 /// Diagnoses whenever there are new runs; what it looks at is bounded, and so is its time.
 #[derive(Clone)]
 pub(super) struct Diagnoser {
     known: Arc<Mutex<Known>>,
+    board: Board,
     ask: SyncSender<()>,
 }
 
 impl Diagnoser {
-    /// Starts its thread, which ends when the last of its handles is gone.
-    pub(super) fn start(campaign: Campaign) -> Self {
+    /// Starts its thread, which ends when the last of its handles is gone; who wants to hear of
+    /// every new diagnosis is asked to tell again.
+    pub(super) fn start(campaign: Campaign, board: &Board, orders: Orders) -> Self {
         // One question waits while another is answered; more would be the same question.
         let (ask, asked) = sync_channel(1);
         let known = Arc::new(Mutex::new(Known::default()));
-        let own = Arc::clone(&known);
-        thread::spawn(move || answer(&campaign, &own, &asked));
-        Self { known, ask }
+        let (own, own_board) = (Arc::clone(&known), board.clone());
+        thread::spawn(move || answer(&campaign, &own, &own_board, (&asked, &orders)));
+        Self { known, board: board.clone(), ask }
     }
 
     /// Takes a run whose histories are still with it.
@@ -49,44 +55,60 @@ impl Diagnoser {
     }
 
     /// The newest diagnosis.
-    pub(super) fn newest(&self) -> Option<Arc<Diagnosis>> {
+    pub(super) fn newest(&self) -> Option<Diagnosed> {
         lock(&self.known).diagnosis.clone()
     }
 
     /// The diagnosis of all that was heard.
-    pub(super) fn last(&self, campaign: &Campaign) -> Option<Arc<Diagnosis>> {
-        diagnose(campaign, &self.known);
+    pub(super) fn last(&self, campaign: &Campaign) -> Option<Diagnosed> {
+        diagnose(campaign, &self.known, &self.board);
         self.newest()
     }
 }
 
-fn answer(campaign: &Campaign, known: &Mutex<Known>, asked: &Receiver<()>) {
+fn answer(
+    campaign: &Campaign,
+    known: &Mutex<Known>,
+    board: &Board,
+    (asked, orders): (&Receiver<()>, &Orders),
+) {
     while asked.recv().is_ok() {
-        diagnose(campaign, known);
+        if diagnose(campaign, known, board) {
+            // A full queue of orders ends in results that are told anyway.
+            orders.try_send(Order::TellAgain).ok();
+        }
     }
 }
 
-/// Diagnoses what was heard, if that is more than the newest diagnosis knew, and writes its page.
-fn diagnose(campaign: &Campaign, known: &Mutex<Known>) {
-    let (observed, n_heard) = {
+/// Diagnoses what was heard and not rejected by hand, if that is more than the newest diagnosis
+/// knew, and writes its page; whether it is a new one.
+fn diagnose(campaign: &Campaign, known: &Mutex<Known>, board: &Board) -> bool {
+    let judgements = board.judgements();
+    let (observed, of) = {
         let known = lock(known);
-        let n_heard = known.observed.n_heard();
-        if n_heard == known.n_diagnosed {
-            return;
+        let of = (known.observed.n_heard(), judgements.all().len());
+        if of == known.of {
+            return false;
         }
-        (known.observed.clone(), n_heard)
+        (known.observed.clone().judged(&judgements), of)
     };
-    let Some(diagnosis) = observed.diagnosed(campaign).map(Arc::new) else { return };
+    let nothing_left = observed.is_empty();
+    let diagnosis = observed.diagnosed(campaign).map(Arc::new);
+    if diagnosis.is_none() && !nothing_left {
+        return false;
+    }
     // One writer at a time, and never an older diagnosis over a newer one.
     let mut known = lock(known);
-    if n_heard > known.n_diagnosed {
-        write(campaign, &diagnosis, &pipeline::results_folder(campaign));
-        (known.n_diagnosed, known.diagnosis) = (n_heard, Some(diagnosis));
+    let is_newer = of > known.of;
+    if is_newer {
+        write(campaign, diagnosis.as_deref(), &pipeline::results_folder(campaign));
+        (known.of, known.diagnosis) = (of, diagnosis);
     }
+    is_newer
 }
 
-fn write(campaign: &Campaign, diagnosis: &Diagnosis, dir: &Path) {
-    if let Err(error) = report::write_diagnosis(campaign, Some(diagnosis), dir) {
+fn write(campaign: &Campaign, diagnosis: Option<&Diagnosis>, dir: &Path) {
+    if let Err(error) = report::write_diagnosis(campaign, diagnosis, dir) {
         tracing::error!("diagnosis not written: {error}");
     }
 }

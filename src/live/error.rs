@@ -1,13 +1,13 @@
 //! What keeps the daemon from its work.
 
 use std::io;
-use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use devices::{AttachmentError, InstrumentError};
 use replay::ReplayError;
 
 use crate::campaign::{FILE_NAME, Mistake};
+use crate::page::ServeError;
 
 /// A daemon that cannot start, or could not finish a recording.
 #[derive(Debug, thiserror::Error)]
@@ -54,19 +54,12 @@ pub enum LiveError {
         /// What the system said.
         source: io::Error,
     },
-    /// Listening beyond this machine without a token.
-    #[error("listening on {address}, beyond this machine, needs a token")]
-    NoToken {
-        /// The address.
-        address: SocketAddr,
-    },
-    /// An address that cannot be listened on.
-    #[error("cannot listen on {address}")]
-    Listen {
-        /// The address.
-        address: SocketAddr,
-        /// What the system said.
-        source: io::Error,
+    /// A page that cannot be served.
+    #[error(transparent)]
+    Serve {
+        /// Why not.
+        #[from]
+        source: ServeError,
     },
     /// A port's thread has died.
     #[error("the thread of a port has died; its own message stands above")]
@@ -95,13 +88,7 @@ impl LiveError {
             Self::File { .. } => {
                 Some("check that the folder can be written and that the disk has room".to_owned())
             }
-            Self::NoToken { .. } => {
-                Some("name a file with --token-file, or listen on 127.0.0.1".to_owned())
-            }
-            Self::Listen { .. } => Some(
-                "another daemon may run; name another address with --listen, port 0 for any"
-                    .to_owned(),
-            ),
+            Self::Serve { source } => Some(source.hint().to_owned()),
             Self::Campaign { .. }
             | Self::Attachment { .. }
             | Self::PortThread

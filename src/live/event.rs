@@ -1,9 +1,8 @@
 //! Everything that can happen to the daemon, as one closed enum.
 
-use devices::port::LinkEvent;
-use tokio::sync::mpsc;
-
 use super::reporting::Reported;
+use crate::page::Order;
+use devices::port::LinkEvent;
 
 /// What the loop of a session takes, one after the other.
 pub(super) enum Event {
@@ -26,25 +25,6 @@ pub(super) enum Event {
     Tick,
 }
 
-/// What can be asked of the daemon from outside.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Order {
-    /// Finish the recording and end.
-    Terminate,
-    /// Read the campaign file again, and follow it from the next rest on.
-    Reload,
-}
-
-/// The end by which the daemon is asked; it may be cloned to every thread.
-pub type Orders = mpsc::Sender<Order>;
-
-/// Orders that may wait.
-const ORDERS_WAITING: usize = 16;
 /// Events that may wait in the loop's queue; behind it each port has a queue of its own, whose
 /// overflow is counted and recorded.
 pub(super) const EVENTS_WAITING: usize = 1024;
-
-/// A queue of orders.
-pub fn orders() -> (Orders, mpsc::Receiver<Order>) {
-    mpsc::channel(ORDERS_WAITING)
-}

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use devices::clock::WallClock;
-use jiff::Timestamp;
 use replay::{
     ClosedRecording, Exit, LIVE_SOURCE, LocalDisk, Progress, Provenance, Record, Recorder,
     ReplayError, Settings,
@@ -13,10 +12,11 @@ use replay::{
 
 use super::error::LiveError;
 use crate::campaign::LIVE_FOLDER;
+use crate::page::stamp;
 
-/// Takes the records of a session.
+/// Takes the records of a session; those of one that is not recorded are let go of.
 pub(super) struct Keeper {
-    recorder: Recorder,
+    recorder: Option<Recorder>,
     n_refused: u64,
 }
 
@@ -31,12 +31,6 @@ pub(super) fn fresh_name(folder: &Path, clock: &WallClock, now_ns: u64) -> Strin
     let numbered = (2_u32..).map(|number| format!("{LIVE_FOLDER}/{stamp}_{number}.mcap"));
     let mut names = std::iter::once(format!("{LIVE_FOLDER}/{stamp}.mcap")).chain(numbered);
     names.find(|name| !taken(name)).expect("there are fewer files than numbers")
-}
-
-/// Date and time in UTC at a time of the clock [ns].
-pub fn stamp(clock: &WallClock, now_ns: u64, format: &str) -> String {
-    let unix_ns = clock.start_unix_ns() as i128 + i128::from(now_ns);
-    Timestamp::from_nanosecond(unix_ns).unwrap_or_default().strftime(format).to_string()
 }
 
 impl Keeper {
@@ -55,18 +49,28 @@ impl Keeper {
             zero_log_time_ns: u64::try_from(clock.start_unix_ns()).unwrap_or_default(),
         };
         let recorder = Recorder::start(path, &provenance, Settings::LIVE, Box::new(LocalDisk))?;
-        Ok(Self { recorder, n_refused: 0 })
+        Ok(Self { recorder: Some(recorder), n_refused: 0 })
+    }
+
+    /// Of a session that somebody does not want recorded.
+    pub(super) fn idle() -> Self {
+        Self { recorder: None, n_refused: 0 }
+    }
+
+    /// Whether anything is recorded.
+    pub(super) fn records(&self) -> bool {
+        self.recorder.is_some()
     }
 
     /// Takes a record; a disk that fails is told once and stops nothing else.
     pub(super) fn push(&mut self, record: Record) {
-        let pushed = self.recorder.push(record);
+        let pushed = self.recorder.as_mut().map_or(Ok(()), |recorder| recorder.push(record));
         self.told(pushed);
     }
 
     /// Does what is due at a time of the world.
     pub(super) fn tick(&mut self, now: Duration) {
-        let ticked = self.recorder.tick(now);
+        let ticked = self.recorder.as_mut().map_or(Ok(()), |recorder| recorder.tick(now));
         self.told(ticked);
     }
 
@@ -87,13 +91,14 @@ impl Keeper {
     }
 
     pub(super) fn progress(&self) -> Progress {
-        let progress = self.recorder.progress();
+        let progress = self.recorder.as_ref().map(Recorder::progress).unwrap_or_default();
         Progress { unrecorded: progress.unrecorded + self.n_refused, ..progress }
     }
 
     /// Ends the recording; [`ClosedRecording::convert`] gives it its name.
-    pub(super) fn close(self, reason: &str) -> Result<ClosedRecording, LiveError> {
-        Ok(self.recorder.close(Exit::success(reason))?)
+    pub(super) fn close(self, reason: &str) -> Result<Option<ClosedRecording>, LiveError> {
+        let Some(recorder) = self.recorder else { return Ok(None) };
+        Ok(Some(recorder.close(Exit::success(reason))?))
     }
 }
 

@@ -5,7 +5,7 @@
 //!                           |    \---> run finder -> identifying threads -> reporter (reporting)
 //!                           |                                              |
 //!                           |                                              \---> (diagnosing)
-//!                           \---> status -> /healthz /readyz /metrics
+//!                           \---> board -> page
 //! ```
 //!
 //! A session is one recording: its instruments are attached when it begins and detached when it
@@ -18,25 +18,18 @@ mod daemon;
 mod diagnosing;
 mod error;
 mod event;
-mod health;
 mod keeping;
-mod metrics;
 mod reporting;
 mod session;
-pub mod status;
+mod showing;
 mod supervisor;
 mod tally;
 mod telling;
 mod under_way;
 mod virtual_day;
 mod virtual_tank;
-mod zeroing;
 
 pub use daemon::{DaemonOptions, run};
 pub use error::LiveError;
-pub use event::{Order, Orders, orders};
-pub use health::Listen;
-pub use keeping::stamp;
-pub use status::{SharedStatus, Status};
 pub use virtual_day::{DayEnded, DayProgress, virtual_day};
 pub use virtual_tank::VirtualTank;

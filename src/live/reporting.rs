@@ -7,10 +7,12 @@ use std::sync::mpsc::Receiver;
 use devices::clock::Clock;
 use tokio::sync::mpsc::Sender;
 
-use super::diagnosing::Diagnoser;
+use super::diagnosing::{Diagnosed, Diagnoser};
 use super::event::Event;
+use super::showing::show;
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
+use crate::page::Board;
 use crate::pipeline::{self, FoundRun, LiveResults, LiveStep};
 use crate::report;
 use crate::results::{IdentifiedRun, Results};
@@ -47,24 +49,29 @@ pub(super) struct Reporter<'a> {
     pub(super) clock: Arc<dyn Clock>,
     /// What finds out what the simulation gets wrong.
     pub(super) diagnoser: Diagnoser,
+    /// Where results are shown.
+    pub(super) board: &'a Board,
     /// The loop.
     pub(super) events: Sender<Event>,
 }
 
 impl Reporter<'_> {
-    /// Reports each run, and in the end gives all results, earlier ones included; none when those
-    /// are not known again.
+    /// Reports each run, and in the end gives all results, earlier ones included and unjudged; none
+    /// when those are not known again.
     pub(super) fn run(mut self) -> Option<Results> {
         let dir = pipeline::results_folder(self.campaign);
         let mut known: Option<Results> = None;
-        loop {
-            let reported = match self.results.next_step() {
-                None => break,
-                Some(LiveStep::Noted) => continue,
-                Some(LiveStep::Refused { found, reason }) => {
-                    Reported { found, outcome: Err(reason), at_ns: self.clock.now_ns() }
+        while let Some(step) = self.results.next_step() {
+            let reported = match step {
+                LiveStep::Noted => continue,
+                LiveStep::TellAgain => {
+                    self.diagnoser.ask();
+                    None
                 }
-                Some(LiveStep::Identified { found, run, overview }) => {
+                LiveStep::Refused { found, reason } => {
+                    Some(Reported { found, outcome: Err(reason), at_ns: self.clock.now_ns() })
+                }
+                LiveStep::Identified { found, run, overview } => {
                     if let Err(error) =
                         pipeline::write_run_page(self.campaign, run, &overview, &dir)
                     {
@@ -75,25 +82,33 @@ impl Reporter<'_> {
                     self.diagnoser.hear(run, self.campaign);
                     self.diagnoser.ask();
                     pipeline::forget_histories(run);
-                    Reported { found, outcome, at_ns }
+                    Some(Reported { found, outcome, at_ns })
                 }
             };
-            // A loop that has ended was told everything before.
-            self.events.blocking_send(Event::Reported(Box::new(reported))).ok();
             known = known.or_else(|| self.earlier.try_recv().ok().flatten());
+            let results = self.shown(known.as_ref(), self.diagnoser.newest().as_ref());
+            if let Some(reported) = reported {
+                // A loop that has ended was told everything before.
+                self.events.blocking_send(Event::Reported(Box::new(reported))).ok();
+            }
             // Pages of earlier runs would be taken for stale ones before those are known again.
-            if let Some(earlier) = &known {
-                let diagnosis = self.diagnoser.newest();
-                let results = self.results.results(earlier);
-                write(self.campaign, &results, diagnosis.as_deref(), &dir);
+            if known.is_some() {
+                write(self.campaign, &results, self.diagnoser.newest().as_deref(), &dir);
             }
         }
         self.events.blocking_send(Event::AllReported).ok();
         let earlier = known.or_else(|| self.earlier.recv().ok().flatten())?;
-        let results = self.results.results(&earlier);
         let diagnosis = self.diagnoser.last(self.campaign);
+        let results = self.shown(Some(&earlier), diagnosis.as_ref());
         write(self.campaign, &results, diagnosis.as_deref(), &dir);
-        Some(results)
+        Some(self.results.results(&earlier))
+    }
+
+    /// Shows all that is known and what nobody has rejected of it; returns that.
+    fn shown(&self, earlier: Option<&Results>, diagnosis: Option<&Diagnosed>) -> Results {
+        let none = Results::default();
+        let found = self.results.results(earlier.unwrap_or(&none));
+        show(self.campaign, found, diagnosis, self.board)
     }
 }
 

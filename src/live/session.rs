@@ -12,13 +12,15 @@ use tokio::sync::mpsc;
 use super::attaching::Detach;
 use super::diagnosing::Diagnoser;
 use super::error::LiveError;
-use super::event::{EVENTS_WAITING, Order};
+use super::event::EVENTS_WAITING;
 use super::keeping::{Keeper, fresh_name};
 use super::reporting::Reporter;
-use super::status::SharedStatus;
+use super::showing::show;
 use super::supervisor::Supervisor;
 use super::under_way::{Ended, State, UnderWay};
 use crate::campaign::{Campaign, Recording};
+use crate::judgement::Judgements;
+use crate::page::{Board, Order};
 use crate::pipeline::{self, Options};
 use crate::results::Results;
 
@@ -34,16 +36,18 @@ pub(super) struct Plan {
     pub(super) diagnoser: Diagnoser,
     /// Age [s] at which a recording gives way to the next when the model is at rest.
     pub(super) rotate_s: f64,
+    /// Who does not want it recorded, if anybody.
+    pub(super) paused_by: Option<String>,
 }
 
 /// What a session leaves.
 pub(super) struct Left {
     pub(super) ended: Ended,
-    /// The recording, still to be converted.
-    pub(super) closed: ClosedRecording,
+    /// The recording, still to be converted, where there was one.
+    pub(super) closed: Option<ClosedRecording>,
     /// Everything learnt so far.
     pub(super) results: Option<Results>,
-    /// The campaign's recordings, this one the last of them.
+    /// The campaign's recordings, with this one where it is one.
     pub(super) recordings: Vec<Recording>,
 }
 
@@ -52,17 +56,21 @@ pub(super) struct Lent<'l> {
     pub(super) runtime: &'l tokio::runtime::Handle,
     pub(super) clock: &'l Arc<WallClock>,
     pub(super) orders: &'l mut mpsc::Receiver<Order>,
-    pub(super) status: &'l SharedStatus,
+    pub(super) board: &'l Board,
     pub(super) supervisor: &'l mut Supervisor,
 }
 
 /// Records until something ends the session.
 pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
-    let Plan { mut campaign, text, earlier, diagnoser, rotate_s } = plan;
-    let Lent { runtime, clock, orders, status, supervisor } = lent;
-    let before = campaign.clone();
-    let now_ns = clock.now_ns();
-    let name = fresh_name(&campaign.folder, clock, now_ns);
+    let Plan { mut campaign, text, earlier, diagnoser, rotate_s, paused_by } = plan;
+    let Lent { runtime, clock, orders, board, supervisor } = lent;
+    // Whoever takes a judgement back gets the run again, so that none is laid over these.
+    campaign.judgements = Judgements::default();
+    let before = &campaign.clone();
+    let name = match &paused_by {
+        None => fresh_name(&campaign.folder, clock, clock.now_ns()),
+        Some(_) => String::new(),
+    };
     let path = campaign.folder.join(&name);
     campaign.recordings.push(Recording {
         name,
@@ -72,7 +80,11 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
         line: None,
     });
     let campaign = &campaign;
-    let keeper = Keeper::start(&path, text.clone(), clock)?;
+    let keeper = match &paused_by {
+        None => Keeper::start(&path, text.clone(), clock)?,
+        Some(_) => Keeper::idle(),
+    };
+    board.change(|status| status.paused_by = paused_by);
     let options = Options { keep_histories: false, ..Options::default() };
     let detach = Detach::default();
     let (sender, events) = mpsc::channel(EVENTS_WAITING);
@@ -81,7 +93,13 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
     let (recorded, results) = thread::scope(|scope| {
         let (terminating, heard_by) = (detach.clone(), diagnoser.clone());
         scope.spawn(move || {
-            let earlier = earlier.or_else(|| replayed(&before, &terminating, &heard_by));
+            let earlier = earlier.or_else(|| {
+                let earlier = replayed(before, &terminating, &heard_by);
+                if let Some(earlier) = &earlier {
+                    show(before, earlier.clone(), None, board);
+                }
+                earlier
+            });
             // The reporter is there as long as the loop, and waits for this.
             teller.send(earlier).ok();
             knows_earlier.store(true, Ordering::Release);
@@ -90,7 +108,7 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
         let mut under_way = UnderWay {
             campaign,
             clock,
-            status,
+            board,
             supervisor,
             keeper,
             runs: Some(runs),
@@ -106,6 +124,7 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
             earlier: earlier_told,
             clock: Arc::clone(clock) as Arc<dyn Clock>,
             diagnoser,
+            board,
             events: sender,
         };
         let reporter = scope.spawn(move || reporter.run());
@@ -125,11 +144,13 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
         Ended::Terminated => "the daemon was asked to end",
         Ended::Reloaded(_) => "a new campaign file came into force",
         Ended::Rotated => "it was long enough",
+        Ended::Paused(_) | Ended::Resumed => "somebody stopped the recording",
         Ended::Broken => "the thread of a port died",
     };
     let closed = keeper.close(reason)?;
     let results = results.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-    let recordings = campaign.recordings.clone();
+    let recorded = if closed.is_some() { campaign } else { before };
+    let recordings = recorded.recordings.clone();
     Ok(Left { ended, closed, results, recordings })
 }
 

@@ -18,7 +18,10 @@ impl UnderWay<'_> {
                 Found::Run(run) => {
                     self.state.decided_ns.insert(run.number, at_ns);
                     self.found_run(&run, time_s);
-                    self.status.change(|status| status.runs.n_found += 1);
+                    self.board.change(|status| {
+                        status.runs.n_found += 1;
+                        status.motion.run_ended_s = Some(run.end_s);
+                    });
                 }
                 Found::Rejected(rejection) => {
                     let crate::run::Rejection { start_s, end_s, reason } = rejection;
@@ -29,7 +32,7 @@ impl UnderWay<'_> {
                         end_s,
                         reason,
                     }));
-                    self.status.change(|status| status.runs.n_rejected += 1);
+                    self.board.change(|status| status.runs.n_rejected += 1);
                 }
             }
         }
@@ -74,14 +77,14 @@ impl UnderWay<'_> {
                     schema: IDENTIFICATION_NAME.to_owned(),
                     document: identified.document,
                 }));
-                self.status.change(|status| status.runs.reported(latency_s));
+                self.board.change(|status| status.runs.reported(latency_s));
             }
             Err(reason) => {
                 let (start_s, end_s) = (found.start_s, found.end_s);
                 tracing::warn!(start_s, end_s, "run refused: {reason}");
                 let rejection = Rejection { time_s, start_s, end_s, reason };
                 self.keeper.push(Record::Rejection(rejection));
-                self.status.change(|status| status.runs.n_refused += 1);
+                self.board.change(|status| status.runs.n_refused += 1);
             }
         }
     }

@@ -16,15 +16,20 @@ use tokio::sync::mpsc::{Receiver, Sender};
 use super::attached::{Attached, Taken};
 use super::attaching::{Detach, forward};
 use super::error::{LiveError, no_devices};
-use super::event::{Event, Order};
+use super::event::Event;
 use super::keeping::Keeper;
-use super::status::{RecordedStatus, SharedStatus};
 use super::supervisor::Supervisor;
 use crate::campaign::{self, Campaign, FILE_NAME};
+use crate::page::status::RecordedStatus;
+use crate::page::{Board, Order};
 use crate::pipeline::{Found, LiveRuns};
+use crate::procedure::CALM_DEG;
+use crate::settling::Settling;
 
 /// How often time is told to the loop.
 const TICK: Duration = Duration::from_millis(50);
+/// Ticks from one forecast of the calm to the next.
+const TICKS_PER_FORECAST: u64 = 20;
 /// Without a sample of roll for so long [s] nothing can be under way.
 const ROLL_AWAY_S: f64 = 10.0;
 /// Rest [s] before a new campaign file comes into force: a model that is heeled for its release is
@@ -41,6 +46,10 @@ pub(super) enum Ended {
     Reloaded(Box<Reload>),
     /// The recording was long enough.
     Rotated,
+    /// Somebody, who is named, wants no recording for a while.
+    Paused(String),
+    /// It is wanted again.
+    Resumed,
     /// A port's thread has died, which a new start may mend.
     Broken,
 }
@@ -56,7 +65,7 @@ pub(super) struct Reload {
 pub(super) struct UnderWay<'a> {
     pub(super) campaign: &'a Campaign,
     pub(super) clock: &'a Arc<WallClock>,
-    pub(super) status: &'a SharedStatus,
+    pub(super) board: &'a Board,
     pub(super) supervisor: &'a mut Supervisor,
     pub(super) keeper: Keeper,
     /// Where samples go, until the recording has ended.
@@ -74,6 +83,12 @@ pub(super) struct UnderWay<'a> {
 pub(super) struct State {
     pub(super) attached: Vec<Attached>,
     pub(super) n_attached: usize,
+    /// How the water calms between runs.
+    pub(super) settling: Option<Settling>,
+    /// Ticks of the clock so far.
+    pub(super) n_ticks: u64,
+    /// What each strip shows.
+    pub(super) strips: Vec<Quantity>,
     pub(super) losses: LinkLosses,
     pub(super) found: Vec<Found>,
     pub(super) taken: Taken,
@@ -85,6 +100,8 @@ pub(super) struct State {
     pub(super) roll_ns: u64,
     pub(super) n_events: u64,
     pub(super) reload: Option<Box<Reload>>,
+    /// The end that somebody wants at once.
+    pub(super) wanted: Option<Ended>,
     pub(super) ended: Option<Ended>,
     pub(super) all_reported: bool,
 }
@@ -119,15 +136,23 @@ impl UnderWay<'_> {
         }
         self.supervisor.ready("recording");
         let (campaign, state) = (self.campaign, &self.state);
-        self.status.change(|status| {
+        self.board.change(|status| {
             status.campaign.clone_from(&campaign.name);
             status.condition.clone_from(&campaign.live.condition);
             let recording = campaign.recordings.last();
             status.recording = recording.map_or(String::new(), |last| last.name.clone());
             status.n_sessions += 1;
+            status.tank_length_m = campaign.tank.length_m;
+            status.froude_one_m_s = campaign.hull.speed_m_s(1.0, &campaign.water);
             status.devices = state.attached.iter().map(Attached::status).collect();
             status.reload_waits = false;
         });
+        let channels = live.devices.iter().flat_map(|device| &device.channels);
+        let strips: Vec<Quantity> = channels.map(|channel| channel.quantity).collect();
+        let clock_speed = 1.0 / self.clock.real(1_000_000_000).as_secs_f64();
+        let names = strips.iter().map(|quantity| quantity.name()).collect();
+        self.board.strips().go_on(names, clock_speed);
+        self.state.strips = strips;
         Ok(())
     }
 
@@ -173,6 +198,15 @@ impl UnderWay<'_> {
                 Event::AllReported => self.state.all_reported = true,
                 Event::Order(Order::Terminate) => self.end(Ended::Terminated),
                 Event::Order(Order::Reload) => self.read_again(),
+                Event::Order(Order::TellAgain) => {
+                    self.runs.iter().for_each(LiveRuns::tell_again);
+                }
+                Event::Order(Order::StopRecording { by }) => {
+                    self.state.wanted = self.keeper.records().then_some(Ended::Paused(by));
+                }
+                Event::Order(Order::StartRecording) => {
+                    self.state.wanted = (!self.keeper.records()).then_some(Ended::Resumed);
+                }
                 Event::Tick => self.tick(),
             }
             if self.state.all_reported
@@ -197,17 +231,41 @@ impl UnderWay<'_> {
         self.state.taken = taken;
     }
 
-    fn samples(&mut self, samples: &[Sample], at_ns: u64) {
-        let state = &mut self.state;
-        for sample in samples {
-            if sample.quantity == Quantity::Roll {
-                state.roll_ns = at_ns;
+    /// Hands samples to the page, in the units in which people read them.
+    fn show(&mut self, samples: &[Sample]) {
+        let settling = self.state.settling.get_or_insert_with(|| Settling::new(CALM_DEG));
+        for sample in samples.iter().filter(|sample| sample.quantity == Quantity::Roll) {
+            settling.push(sample.time_s, sample.value);
+        }
+        let mut strips = self.board.strips();
+        for &Sample { quantity, time_s, value } in samples {
+            let shown = if quantity == Quantity::Roll { value.to_degrees() } else { value };
+            if let Some(strip) = self.state.strips.iter().position(|of| *of == quantity) {
+                strips.push(strip, time_s, shown);
             }
         }
-        let Some(runs) = &mut self.runs else { return };
-        runs.push(samples, &mut state.found);
+        drop(strips);
+        self.board.change(|status| {
+            for sample in samples {
+                match sample.quantity {
+                    Quantity::Roll => status.motion.push(sample.time_s, sample.value),
+                    Quantity::Speed => status.pass.push(sample.time_s, sample.value),
+                    Quantity::Force | Quantity::Moment => {}
+                }
+            }
+        });
+    }
+
+    fn samples(&mut self, samples: &[Sample], at_ns: u64) {
+        if samples.iter().any(|sample| sample.quantity == Quantity::Roll) {
+            self.state.roll_ns = at_ns;
+        }
+        self.show(samples);
+        // What is not recorded would be missing in a replay.
+        let Some(runs) = self.runs.as_mut().filter(|_| self.keeper.records()) else { return };
+        runs.push(samples, &mut self.state.found);
         if !runs.is_at_rest() {
-            state.moved_ns = at_ns;
+            self.state.moved_ns = at_ns;
         }
         self.take_found(at_ns);
     }
@@ -225,7 +283,8 @@ impl UnderWay<'_> {
 
     /// The last event of the last device was taken.
     fn end_runs(&mut self) {
-        let Some(runs) = self.runs.take() else { return };
+        // Without a recording nothing has ended; the telling end notes that this one is gone.
+        let Some(runs) = self.runs.take().filter(|_| self.keeper.records()) else { return };
         let mut notes: Vec<Note> = Vec::new();
         self.state.losses.notes(&mut notes);
         self.read_clocks();
@@ -246,7 +305,7 @@ impl UnderWay<'_> {
             Ok(campaign) => {
                 tracing::info!("the new campaign file is in force from the next rest on");
                 self.state.reload = Some(Box::new(Reload { campaign, text }));
-                self.status.change(|status| {
+                self.board.change(|status| {
                     status.reload_waits = true;
                     status.refused_reload = None;
                 });
@@ -257,7 +316,7 @@ impl UnderWay<'_> {
                     tracing::error!(hint, "the campaign file stays as it was: {mistake}");
                 }
                 let told: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
-                self.status.change(|status| status.refused_reload = Some(told.join("; ")));
+                self.board.change(|status| status.refused_reload = Some(told.join("; ")));
             }
         }
         // From here on the daemon follows the file by itself, at the next rest.
@@ -266,6 +325,7 @@ impl UnderWay<'_> {
 
     fn tick(&mut self) {
         let now_ns = self.clock.now_ns();
+        self.state.n_ticks += 1;
         self.keeper.tick(self.clock.real(now_ns));
         self.supervisor.alive(self.clock.real(now_ns));
         let since_s = |at_ns: u64| now_ns.saturating_sub(at_ns) as f64 / 1e9;
@@ -273,7 +333,11 @@ impl UnderWay<'_> {
         let roll_is_away = since_s(state.roll_ns) > ROLL_AWAY_S;
         let rested_s = if roll_is_away { f64::INFINITY } else { since_s(state.moved_ns) };
         let may_end = state.ended.is_none() && self.knows_earlier.load(Ordering::Acquire);
-        if may_end && rested_s >= RELOAD_REST_S && state.reload.is_some() {
+        if may_end && state.wanted.is_some() {
+            if let Some(wanted) = state.wanted.take() {
+                self.end(wanted);
+            }
+        } else if may_end && rested_s >= RELOAD_REST_S && state.reload.is_some() {
             if let Some(reload) = state.reload.take() {
                 self.end(Ended::Reloaded(reload));
             }
@@ -283,6 +347,7 @@ impl UnderWay<'_> {
             && !roll_is_away
             // On a full disk no other could begin.
             && !self.keeper.progress().stopped
+            && self.keeper.records()
         {
             self.end(Ended::Rotated);
         }
@@ -293,8 +358,13 @@ impl UnderWay<'_> {
         let progress = self.keeper.progress();
         let (state, at_s) = (&self.state, self.clock.now_ns() as f64 / 1e9);
         let n_unheard = self.runs.as_ref().map_or(0, LiveRuns::n_unheard);
-        self.status.change(|status| {
+        let is_due = state.n_ticks.is_multiple_of(TICKS_PER_FORECAST);
+        let calm = state.settling.as_ref().filter(|_| is_due).map(Settling::calm);
+        let at_rest = self.runs.as_ref().is_none_or(LiveRuns::is_at_rest);
+        self.board.change(|status| {
             status.at_s = at_s;
+            status.motion.note_rest(at_rest, at_s);
+            status.calm = calm.or(status.calm);
             status.n_events = state.n_events;
             status.devices = state.attached.iter().map(Attached::status).collect();
             status.runs.n_unheard = status.runs.n_unheard.max(n_unheard);

@@ -10,10 +10,9 @@ use devices::clock::{Clock, WallClock};
 
 use super::daemon::{DaemonOptions, run};
 use super::error::LiveError;
-use super::event::{Order, Orders, orders};
-use super::status::{SharedStatus, Status};
 use super::virtual_tank::VirtualTank;
 use crate::campaign::{self, FILE_NAME};
+use crate::page::{Board, Listen, Order, Orders, Status, orders};
 use crate::results::Results;
 use crate::tank::{FileFormat, Scenario, campaign_head};
 
@@ -67,7 +66,8 @@ pub struct DayProgress<'p> {
     pub status: &'p Status,
 }
 
-/// Plays every pass of a scenario before a daemon, condition by condition, in a fresh folder.
+/// Plays every pass of a scenario before a daemon, condition by condition, in a fresh folder; on a
+/// clock of that speed, with the page served there, if anywhere.
 ///
 /// # Errors
 /// [`LiveError`] of tank or daemon.
@@ -75,7 +75,7 @@ pub fn virtual_day(
     scenario: &Scenario,
     seed: u64,
     folder: &Path,
-    speed: f64,
+    (speed, listen): (f64, Option<Listen>),
     progress: &mut dyn FnMut(DayProgress<'_>),
 ) -> Result<DayEnded, LiveError> {
     let conditions = conditions(scenario);
@@ -84,14 +84,13 @@ pub fn virtual_day(
     let devices = campaign::read(folder)?.live.devices;
     let clock = Arc::new(WallClock::start_at_speed(speed));
     let tank = VirtualTank::plug_in(scenario.clone(), seed, &devices, &clock)?;
-    let status = SharedStatus::default();
+    let board = Board::default();
     let (sender, receiver) = orders();
-    let options =
-        DaemonOptions { folder: folder.to_owned(), rotate_s: f64::INFINITY, listen: None };
+    let options = DaemonOptions { folder: folder.to_owned(), rotate_s: f64::INFINITY, listen };
     let results = thread::scope(|scope| {
-        let (clock, status, orders) = (&clock, &status, sender.clone());
-        let daemon = scope.spawn(move || run(&options, clock, (orders, receiver), status));
-        let mut day = Day { folder, scenario, tank: &tank, clock, status, orders: &sender };
+        let (clock, board, orders) = (&clock, &board, sender.clone());
+        let daemon = scope.spawn(move || run(&options, clock, (orders, receiver), board));
+        let mut day = Day { folder, scenario, tank: &tank, clock, board, orders: &sender };
         let is_over = || daemon.is_finished();
         let played = day.play(&conditions, &is_over, progress);
         // A daemon that has ended by itself has told why.
@@ -99,7 +98,7 @@ pub fn virtual_day(
         let results = daemon.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         played.and(results)
     })?;
-    Ok(DayEnded { results, status: status.now() })
+    Ok(DayEnded { results, status: board.now() })
 }
 
 /// The conditions in their order, each with its passes.
@@ -135,7 +134,7 @@ struct Day<'d> {
     scenario: &'d Scenario,
     tank: &'d VirtualTank,
     clock: &'d WallClock,
-    status: &'d SharedStatus,
+    board: &'d Board,
     orders: &'d Orders,
 }
 
@@ -164,7 +163,7 @@ impl Day<'_> {
             let total_s = per_pass_s * n_passes as f64;
             while self.now_s() < ends_s && !is_over() {
                 let played_s = spent_s + self.now_s() - begins_s;
-                progress(DayProgress { played_s, total_s, status: &self.status.now() });
+                progress(DayProgress { played_s, total_s, status: &self.board.now() });
                 thread::sleep(LOOK);
             }
             spent_s += ends_s - begins_s;
@@ -176,7 +175,7 @@ impl Day<'_> {
     fn attached(&self, session: u64, is_over: &dyn Fn() -> bool) -> Result<(), LiveError> {
         let until = self.clock.real(self.clock.now_ns()) + ATTACH;
         loop {
-            let status = self.status.now();
+            let status = self.board.now();
             if is_over() || status.n_sessions >= session && status.is_ready() {
                 return Ok(());
             }

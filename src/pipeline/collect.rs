@@ -1,5 +1,6 @@
 //! Keeping what the campaign has taught so far, run by run.
 
+use super::judging::judged;
 use super::names;
 use super::workers::Identified;
 use crate::campaign::Campaign;
@@ -87,7 +88,13 @@ impl<'c> Collector<'c> {
     pub(super) fn reject(&mut self, index: usize, rejection: Rejection) {
         let Rejection { start_s, end_s, reason } = rejection;
         let recording = self.campaign.recordings[index].name.clone();
-        self.results.rejected.push(RejectedStretch { recording, start_s, end_s, reason });
+        self.results.rejected.push(RejectedStretch {
+            recording,
+            start_s,
+            end_s,
+            reason,
+            run: None,
+        });
     }
 
     pub(super) fn end_recording(&mut self, overview: Overview) {
@@ -99,26 +106,24 @@ impl<'c> Collector<'c> {
         &self.results
     }
 
-    pub(super) fn into_results(mut self) -> Results {
-        self.results.froude_laws = froude_laws(&self.results);
-        self.results
+    pub(super) fn into_results(self) -> Results {
+        judged(self.results, &self.campaign.judgements)
     }
 }
 
-/// The results of earlier recordings and then of later ones, with the laws of all.
+/// The results of earlier recordings and then of later ones, without the laws.
 pub(super) fn joined(earlier: &Results, later: &Results) -> Results {
     let mut all = earlier.clone();
     all.runs.extend_from_slice(&later.runs);
     all.rejected.extend_from_slice(&later.rejected);
     all.overviews.extend_from_slice(&later.overviews);
-    all.froude_laws = froude_laws(&all);
     all
 }
 
 /// One law per condition, in the order in which the conditions were first met.
 ///
 /// Decays carry the law, as in Table 2 of the paper; forced runs only where a condition has none.
-fn froude_laws(results: &Results) -> Vec<FroudeLaw> {
+pub(super) fn froude_laws(results: &Results) -> Vec<FroudeLaw> {
     let law = |condition: &str| {
         let of_kind = |kind: RunKind| -> Vec<Point> {
             results

@@ -4,6 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::campaign::Campaign;
 use crate::diagnosis::{self, Diagnosis, Observation};
+use crate::judgement::{Judgements, Place};
 use crate::results::IdentifiedRun;
 use crate::run::RunKind;
 
@@ -16,7 +17,7 @@ const NEAR: [f64; 2] = [0.02, 0.03];
 /// What the diagnosis will see of the runs heard so far.
 #[derive(Debug, Clone, Default)]
 pub struct Observed {
-    observations: Vec<Observation>,
+    observations: Vec<(Place, Observation)>,
     left_out: Vec<String>,
     n_heard: usize,
     n_repeats: usize,
@@ -26,13 +27,31 @@ impl Observed {
     /// Takes a run whose histories are still with it.
     pub fn hear(&mut self, run: &IdentifiedRun, campaign: &Campaign) {
         match Observation::new(run, campaign, self.n_heard) {
-            Ok(observation) => self.observations.push(observation),
+            Ok(observation) => {
+                let (start_s, end_s) = (run.run.start_s, run.run.end_s);
+                let place = Place { recording: run.recording.clone(), start_s, end_s };
+                self.observations.push((place, observation));
+            }
             Err(reason) => self.left_out.push(format!("{}: {reason}", run.id)),
         }
         self.n_heard += 1;
         if self.observations.len() > MOST_RUNS {
             self.let_go_of_a_repeat();
         }
+    }
+
+    /// The same without the runs that were rejected by hand.
+    #[must_use]
+    pub fn judged(mut self, judgements: &Judgements) -> Self {
+        let left_out = &mut self.left_out;
+        self.observations.retain(|(Place { recording, start_s, end_s }, observation)| {
+            let rejection = judgements.rejection(recording, *start_s, *end_s);
+            left_out.extend(rejection.map(|rejection| {
+                format!("{}: rejected by hand by {}", observation.id, rejection.by)
+            }));
+            rejection.is_none()
+        });
+        self
     }
 
     /// The runs that take no part, each with its reason, as sentences.
@@ -53,7 +72,8 @@ impl Observed {
     /// because of it.
     pub fn diagnosed(self, campaign: &Campaign) -> Option<Diagnosis> {
         let diagnosed = catch_unwind(AssertUnwindSafe(|| {
-            diagnosis::diagnose(self.observations, &campaign.tank)
+            let observations = self.observations.into_iter().map(|(_, one)| one).collect();
+            diagnosis::diagnose(observations, &campaign.tank)
         }));
         diagnosed.unwrap_or_else(|_| {
             tracing::error!(
@@ -64,6 +84,11 @@ impl Observed {
         })
     }
 
+    /// Whether no run is left to be diagnosed.
+    pub fn is_empty(&self) -> bool {
+        self.observations.is_empty()
+    }
+
     /// Runs heard so far.
     pub fn n_heard(&self) -> usize {
         self.n_heard
@@ -71,7 +96,7 @@ impl Observed {
 
     /// Lets go of the second of the runs that have most like them: the first and the last stay.
     fn let_go_of_a_repeat(&mut self) {
-        let kind = |run: &Observation| -> (String, RunKind, [i64; 3]) {
+        let kind = |(_, run): &(Place, Observation)| -> (String, RunKind, [i64; 3]) {
             let at = &run.at;
             let place = |value: f64, near: f64| (value / near).round() as i64;
             let rolling = if at.kind == RunKind::Forced { place(at.rolling_rad_s, 0.2) } else { 0 };

@@ -110,6 +110,8 @@ fn remove_stale_pages(
         let is_stale = id.is_some_and(|id| {
             (all_are_ours || earlier.iter().any(|earlier| earlier == id))
                 && !results.runs.iter().any(|run| run.id == id)
+                // What was rejected by hand can be looked at, and taken back.
+                && !results.rejected.iter().any(|stretch| stretch.run.as_deref() == Some(id))
         });
         if is_stale {
             fs::remove_file(&path).map_err(at(&path))?;

@@ -23,6 +23,8 @@ pub(super) enum Heard {
     Run { index: usize, found: FoundRun, identified: Receiver<Identified>, overview: Overview },
     /// A stretch will not be used.
     Rejected { index: usize, rejection: Rejection },
+    /// Results are to be told again.
+    TellAgain,
     /// The recording has ended.
     Ended { overview: Overview, notes: Vec<Note> },
 }

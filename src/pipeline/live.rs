@@ -60,6 +60,8 @@ pub enum LiveStep<'r> {
     },
     /// A stretch was not used, or the recording has ended.
     Noted,
+    /// Results are to be told again.
+    TellAgain,
 }
 
 /// The pipeline for the last recording of a campaign, whose samples are still to come.
@@ -88,6 +90,12 @@ impl LiveRuns<'_> {
     pub fn end(mut self, notes: Vec<Note>, found: &mut Vec<Found>) {
         let Self { listening, heard, n_unheard } = &mut self;
         drop(listening.end(notes, &mut |what| tell(what, heard, n_unheard, found)));
+    }
+
+    /// Asks the other end to tell its results once more.
+    pub fn tell_again(&self) {
+        // A full queue brings its own results soon.
+        self.heard.try_send(Heard::TellAgain).ok();
     }
 
     /// Whether neither a run nor any motion is under way.
@@ -127,6 +135,7 @@ impl LiveResults<'_> {
     pub fn next_step(&mut self) -> Option<LiveStep<'_>> {
         Some(match self.heard.recv().ok()? {
             Heard::Covered { .. } | Heard::Read { .. } => LiveStep::Noted,
+            Heard::TellAgain => LiveStep::TellAgain,
             Heard::Run { index, found, identified, overview } => {
                 // A worker that panicked has no answer, and the scope passes its panic on.
                 let identified = identified.recv().ok()?;
@@ -147,7 +156,8 @@ impl LiveResults<'_> {
         })
     }
 
-    /// What this recording has taught so far, behind what earlier ones did.
+    /// What this recording has taught so far, behind what earlier ones did; nothing is judged and
+    /// no law drawn yet, which [`super::judged`] does.
     pub fn results(&self, earlier: &Results) -> Results {
         joined(earlier, self.collector.so_far())
     }

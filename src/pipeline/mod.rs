@@ -10,6 +10,7 @@ mod diagnosing;
 mod error;
 mod files;
 mod histories;
+mod judging;
 mod listening;
 mod live;
 mod names;
@@ -31,6 +32,7 @@ use crate::results::{IdentifiedRun, Overview, Results};
 pub use diagnosing::Observed;
 pub use error::PipelineError;
 pub use files::{REPORT_PAGE, WriteError, results_folder, write_results, write_run_page};
+pub use judging::judged;
 pub use listening::FoundRun;
 pub use live::{Found, LiveResults, LiveRuns, LiveStep, forget_histories, live};
 pub use names::labels;
@@ -112,7 +114,7 @@ pub fn replay(
         let mut collector = Collector::new(campaign);
         for message in queue {
             match message? {
-                Heard::Covered { .. } => {}
+                Heard::Covered { .. } | Heard::TellAgain => {}
                 Heard::Read { index, bytes_read } => progress(Progress::Read {
                     recording: &campaign.recordings[index].name,
                     bytes_read: sizes[..index].iter().sum::<u64>() + bytes_read,

@@ -10,4 +10,4 @@ mod run_gates;
 
 pub use campaign_gates::{CampaignAnswer, of_campaign};
 pub use gate::{Answer, Gate};
-pub use run_gates::of_run;
+pub use run_gates::{CALM_DEG, of_run};

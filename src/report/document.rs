@@ -6,7 +6,7 @@ use super::{ReportError, notation, number};
 use crate::inverse::estimate::Estimate;
 
 /// The style sheet, which is part of every page.
-const STYLE: &str = include_str!("page.css");
+pub(super) const STYLE: &str = include_str!("page.css");
 
 /// Rows of a table, each of two lines, that fit on an A4 page with its heading.
 const ROWS_ON_A_PAGE: usize = 24;
@@ -31,6 +31,14 @@ pub(super) fn page(title: &str, body: &Markup) -> Markup {
             }
         }
     }
+}
+
+/// A page of ours with its style sheet beside it, as a server gives it that lets no page bring
+/// styles of its own.
+pub(super) fn with_style_beside(page: &str, address: &str) -> String {
+    let within = html! { style { (PreEscaped(STYLE)) } }.into_string();
+    let beside = html! { link rel="stylesheet" href=(address); }.into_string();
+    page.replacen(&within, &beside, 1)
 }
 
 /// A section with its heading; `id` is unique on its page.

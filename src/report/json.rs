@@ -234,12 +234,14 @@ struct RejectedJson<'a> {
     start_s: f64,
     end_s: f64,
     reason: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    run: Option<&'a str>,
 }
 
 impl<'a> RejectedJson<'a> {
     fn new(stretch: &'a RejectedStretch) -> Self {
-        let RejectedStretch { recording, start_s, end_s, reason } = stretch;
-        Self { recording, start_s: *start_s, end_s: *end_s, reason }
+        let RejectedStretch { recording, start_s, end_s, reason, run } = stretch;
+        Self { recording, start_s: *start_s, end_s: *end_s, reason, run: run.as_deref() }
     }
 }
 

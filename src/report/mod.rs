@@ -13,6 +13,7 @@ mod gates;
 mod glossary;
 mod json;
 mod json_beliefs;
+mod live_page;
 mod notation;
 mod number;
 mod remark;
@@ -30,6 +31,31 @@ pub use json::{IDENTIFICATION_NAME, IDENTIFICATION_SCHEMA, identification_json};
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
 use crate::results::{IdentifiedRun, Overview, RejectedStretch, Results};
+
+/// The style sheet of every page of the report.
+pub const STYLE: &str = document::STYLE;
+
+/// A page of the report with its style sheet beside it, under an address.
+pub fn with_style_beside(page: &str, address: &str) -> String {
+    document::with_style_beside(page, address)
+}
+
+/// What was learnt so far as parts of the live page: the name of each and its HTML.
+pub fn live_parts(
+    campaign: &Campaign,
+    results: &Results,
+    diagnosis: Option<&Diagnosis>,
+) -> Vec<(&'static str, String)> {
+    live_page::parts(campaign, results, diagnosis)
+}
+
+/// File name of the page of a run.
+///
+/// # Errors
+/// [`ReportError::RunId`] when it would lead out of the folder.
+pub fn run_file_name(id: &str) -> Result<String, ReportError> {
+    document::run_file_name(id)
+}
 
 /// Why a report could not be written.
 #[derive(Debug, thiserror::Error)]

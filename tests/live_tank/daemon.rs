@@ -33,7 +33,11 @@ impl Daemon {
         let said = File::options().create(true).append(true).open(&log).expect("a log");
         let child = Command::new(env!("CARGO_BIN_EXE_rolltank"))
             .args(["run", ".", "--clock-speed", &tank.speed.to_string()])
-            .args(["--listen", "127.0.0.1:0"])
+            .args(if arguments.contains(&"--listen") {
+                &[][..]
+            } else {
+                &["--listen", "127.0.0.1:0"]
+            })
             .args(arguments)
             .current_dir(tank.path())
             .env_remove("RUST_LOG")
@@ -68,6 +72,14 @@ impl Daemon {
         let log = self.log.clone();
         let said = || fs::read_to_string(&log).unwrap_or_default().matches(words).count();
         self.wait_until(&format!("\"{words}\" {times} times"), || said() >= times);
+    }
+
+    /// The address of its page, which its log names.
+    pub(crate) fn address(&mut self) -> String {
+        self.wait_for("serving the page", 1);
+        let said = self.said();
+        let after = said.rsplit("address=").next().expect("the address is told");
+        after.split_whitespace().next().expect("an address").trim_matches('"').to_owned()
     }
 
     pub(crate) fn signal(&self, name: &str) {

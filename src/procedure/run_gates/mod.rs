@@ -9,6 +9,8 @@ mod settled;
 mod small_cycles;
 mod steady_periods;
 
+pub use settled::CALM_DEG;
+
 use super::gate::Answer;
 use crate::results::IdentifiedRun;
 

@@ -7,7 +7,7 @@ const GATE: Gate =
     Gate { id: "settled", asks: "Roll left by the run before", unit: "deg", source: OUR_LIMIT };
 
 /// Amplitude of the roll at rest that still counts as calm [deg].
-const CALM_DEG: f64 = 0.1;
+pub const CALM_DEG: f64 = 0.1;
 
 #[expect(clippy::unnecessary_wraps, reason = "every gate has the same shape")]
 pub(super) fn answer(run: &IdentifiedRun) -> Option<Answer> {

@@ -53,10 +53,10 @@ const PARTS: [fn(&CampaignPage) -> Option<Markup>; 18] = [
 
 /// What the parts of the page are made from.
 #[derive(Debug, Clone, Copy)]
-struct CampaignPage<'a> {
-    campaign: &'a Campaign,
-    results: &'a Results,
-    diagnosis: Option<&'a Diagnosis>,
+pub(super) struct CampaignPage<'a> {
+    pub(super) campaign: &'a Campaign,
+    pub(super) results: &'a Results,
+    pub(super) diagnosis: Option<&'a Diagnosis>,
 }
 
 impl<'a> CampaignPage<'a> {
@@ -84,9 +84,22 @@ impl<'a> CampaignPage<'a> {
             .collect()
     }
 
-    fn field_units(&self, run: &'a IdentifiedRun) -> FieldUnits<'a> {
+    pub(super) fn field_units(&self, run: &'a IdentifiedRun) -> FieldUnits<'a> {
         FieldUnits::new(self.campaign, run)
     }
+}
+
+/// The parts that grow on the live page while the day goes on.
+pub(super) fn live_parts(page: &CampaignPage) -> Markup {
+    let parts =
+        [at_speeds::part, damping_against_froude::part, froude_law::part, equivalent_damping::part];
+    html! { @for part in parts { @if let Some(part) = part(page) { (part) } } }
+}
+
+/// The test plan with what is done of it, and what the procedure says of the whole campaign.
+pub(super) fn plan_parts(page: &CampaignPage) -> Option<Markup> {
+    let (plan, gates) = (plan::part(page)?, gates::part(page));
+    Some(html! { (plan) @if let Some(gates) = gates { (gates) } })
 }
 
 /// The page of the campaign.

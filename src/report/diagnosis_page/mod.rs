@@ -53,6 +53,13 @@ impl<'a> DiagnosisPage<'a> {
     }
 }
 
+/// The parts that the live page shows.
+pub(super) fn live_parts(diagnosis: &Diagnosis) -> Markup {
+    let page = DiagnosisPage { diagnosis };
+    let parts = [causes::part, gain::part, left::part];
+    html! { @for part in parts { @if let Some(part) = part(&page) { (part) } } }
+}
+
 /// The page of a campaign's diagnosis; without one, of a campaign none of whose runs could be
 /// diagnosed.
 pub(super) fn html(campaign: &str, diagnosis: Option<&Diagnosis>) -> Markup {

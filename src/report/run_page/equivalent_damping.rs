@@ -71,6 +71,7 @@ fn figure(page: &RunPage) -> Option<Figure> {
         .iter()
         .map(|at| at.amplitude_rad)
         .chain(roll.iter().map(|roll| roll.abs()))
+        .chain(identification.forced.iter().map(|forced| forced.roll_amplitude_rad.mean))
         .fold(0.0, f64::max);
     if largest <= 0.0 {
         return None;

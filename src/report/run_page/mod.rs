@@ -49,11 +49,11 @@ const PARTS: [fn(&RunPage) -> Option<Markup>; 17] = [
 
 /// What the parts of the page are made from.
 #[derive(Debug, Clone, Copy)]
-struct RunPage<'a> {
-    campaign: &'a Campaign,
-    run: &'a IdentifiedRun,
-    overview: Option<&'a Overview>,
-    rejected: &'a [RejectedStretch],
+pub(super) struct RunPage<'a> {
+    pub(super) campaign: &'a Campaign,
+    pub(super) run: &'a IdentifiedRun,
+    pub(super) overview: Option<&'a Overview>,
+    pub(super) rejected: &'a [RejectedStretch],
 }
 
 impl<'a> RunPage<'a> {
@@ -64,6 +64,13 @@ impl<'a> RunPage<'a> {
     fn field_units(&self) -> FieldUnits<'a> {
         FieldUnits::new(self.campaign, self.run)
     }
+}
+
+/// The parts that the live page shows of the run that ended last.
+pub(super) fn live_parts(page: &RunPage) -> Markup {
+    let parts =
+        [equivalent_damping::part, coefficients::part, forced::part, gates::part, remarks::part];
+    html! { @for part in parts { @if let Some(part) = part(page) { (part) } } }
 }
 
 /// The page of one run.

@@ -1,30 +1,35 @@
-//! `POST /zero`: zeros from the instruments that the daemon itself listens to.
+//! Zeros from the instruments that the daemon itself listens to, and their undoing.
 
 use std::path::Path;
 
 use devices::Quantity;
-use devices::clock::WallClock;
 use serde::Deserialize;
 
-use super::keeping::stamp;
+use super::stamp::stamp_of_now;
 use super::status::{ChannelStatus, Status};
-use crate::campaign::{self, ZeroTaken};
+use crate::campaign::{self, TakenCalibration, ZeroTaken};
+use crate::judgement::Zeroed;
 
 /// What is to be zeroed, and by whom.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ZeroRequest {
     /// Who takes it, as recordings will say.
-    by: String,
+    pub(super) by: String,
     /// The channel; roll and force or moment when none is named.
     channel: Option<Quantity>,
     /// Remark to be kept with it.
     #[serde(default)]
-    note: String,
+    pub(super) note: String,
 }
 
-/// Takes zeros from the last seconds and keeps them; a sentence about each, or why there are none.
-pub(super) fn zero(folder: &Path, status: &Status, asked: &ZeroRequest) -> Result<String, String> {
+/// Takes zeros from the last seconds and keeps them; a sentence about each with what was in force
+/// before, or why there are none.
+pub(super) fn zero(
+    folder: &Path,
+    status: &Status,
+    asked: &ZeroRequest,
+) -> Result<(String, Vec<Zeroed>), String> {
     let campaign = campaign::read(folder).map_err(|mistakes| {
         mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
     })?;
@@ -33,7 +38,7 @@ pub(super) fn zero(folder: &Path, status: &Status, asked: &ZeroRequest) -> Resul
         // A carriage that stands has no speed whose zero could be wrong by a calibration.
         None => channel.quantity != Quantity::Speed,
     };
-    let mut told = Vec::new();
+    let (mut told, mut zeroed) = (Vec::new(), Vec::new());
     for device in &status.devices {
         let setup = campaign.live.setups.iter().find(|setup| setup.name == device.name);
         for channel in device.channels.iter().filter(wanted) {
@@ -46,7 +51,7 @@ pub(super) fn zero(folder: &Path, status: &Status, asked: &ZeroRequest) -> Resul
                 mean: recent.mean,
                 sd: recent.sd,
                 by: asked.by.clone(),
-                at: stamp(&WallClock::start(), 0, "%Y-%m-%d %H:%M:%S UTC"),
+                at: stamp_of_now(),
                 note: asked.note.clone(),
             };
             let mut channels = setup.into_iter().flat_map(|setup| &setup.channels);
@@ -54,11 +59,22 @@ pub(super) fn zero(folder: &Path, status: &Status, asked: &ZeroRequest) -> Resul
             let (calibration, sentence) = taken.applied(&device.name, known);
             campaign::keep_calibration(folder, calibration).map_err(|error| error.to_string())?;
             told.push(sentence + "\n");
+            let before = known.calibration.clone();
+            zeroed.push(Zeroed { device: device.name.clone(), quantity, before });
         }
     }
     if told.is_empty() {
         Err("no such channel is measured\n".to_owned())
     } else {
-        Ok(told.concat())
+        Ok((told.concat(), zeroed))
     }
+}
+
+/// Puts the calibrations that were in force before some zeros in force again.
+pub(super) fn take_back(folder: &Path, channels: &[Zeroed]) -> Result<(), String> {
+    channels.iter().try_for_each(|Zeroed { device, quantity, before }| {
+        let (device, quantity, calibration) = (device.clone(), *quantity, before.clone());
+        campaign::keep_calibration(folder, TakenCalibration { device, quantity, calibration })
+            .map_err(|error| error.to_string())
+    })
 }

@@ -1,10 +1,14 @@
 //! What the daemon is doing right now, for pages, gauges and whoever waits for it.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::net::SocketAddr;
 
 use devices::Quantity;
 use devices::channel::Counts;
 use serde::Serialize;
+
+use super::motion::Motion;
+use super::pass::Pass;
+use crate::settling::Calm;
 
 /// A copy of the daemon's state that is renewed a few times a second.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -27,6 +31,20 @@ pub struct Status {
     pub reload_waits: bool,
     /// What was wrong with the campaign file that was last refused.
     pub refused_reload: Option<String>,
+    /// Where the page is served, if anywhere.
+    pub page: Option<SocketAddr>,
+    /// Who stopped the recording, while it is.
+    pub paused_by: Option<String>,
+    /// What the model does.
+    pub motion: Motion,
+    /// How calm the water is, where it is known.
+    pub calm: Option<Calm>,
+    /// What the carriage does.
+    pub pass: Pass,
+    /// Length of the tank [m], where given.
+    pub tank_length_m: Option<f64>,
+    /// Speed at a Froude number of one [m/s].
+    pub froude_one_m_s: f64,
     /// Events that the loop has taken.
     pub n_events: u64,
     /// The daemon's clock [s] when this was written.
@@ -123,7 +141,7 @@ const LATENCIES_KEPT: usize = 1000;
 
 impl RunsStatus {
     /// One more report, so long after the last sample that it took.
-    pub(super) fn reported(&mut self, latency_s: f64) {
+    pub fn reported(&mut self, latency_s: f64) {
         self.n_identified += 1;
         if self.latencies_s.len() == LATENCIES_KEPT {
             self.latencies_s.remove(0);
@@ -141,6 +159,9 @@ impl Status {
     /// What keeps it from being ready, in sentences.
     pub fn waits_for(&self) -> Vec<String> {
         let mut waits = Vec::new();
+        if let Some(by) = &self.paused_by {
+            waits.push(format!("recording was stopped by {by}"));
+        }
         if self.recorded.stopped {
             waits.push("recording has stopped: the disk is full or fails".to_owned());
         }
@@ -151,10 +172,7 @@ impl Status {
                 None if !device.linked => waits.push(format!("device \"{name}\" is not linked")),
                 None => {}
             }
-            let is_silent = |channel: &&ChannelStatus| {
-                channel.time_s.is_none_or(|time_s| self.at_s - time_s >= READY_S)
-            };
-            for channel in device.channels.iter().filter(is_silent) {
+            for channel in device.channels.iter().filter(|channel| channel.is_silent(self.at_s)) {
                 let channel = channel.quantity.name();
                 waits.push(format!("device \"{name}\" brings no {channel}"));
             }
@@ -163,23 +181,17 @@ impl Status {
     }
 }
 
+impl ChannelStatus {
+    /// The unit in which it is shown: people read roll in degrees.
+    pub fn shown_unit(&self) -> &'static str {
+        if self.quantity == Quantity::Roll { "deg" } else { self.unit }
+    }
+
+    /// Whether it has brought nothing of late, at that time [s].
+    pub fn is_silent(&self, at_s: f64) -> bool {
+        self.time_s.is_none_or(|time_s| at_s - time_s >= READY_S)
+    }
+}
+
 /// A channel without a sample for so long is not ready [s].
 const READY_S: f64 = 2.0;
-
-/// The status as several threads see it.
-#[derive(Debug, Clone, Default)]
-pub struct SharedStatus {
-    inner: Arc<Mutex<Status>>,
-}
-
-impl SharedStatus {
-    /// A copy of the latest.
-    pub fn now(&self) -> Status {
-        self.inner.lock().unwrap_or_else(PoisonError::into_inner).clone()
-    }
-
-    /// Changes it.
-    pub(super) fn change(&self, change: impl FnOnce(&mut Status)) {
-        change(&mut self.inner.lock().unwrap_or_else(PoisonError::into_inner));
-    }
-}
