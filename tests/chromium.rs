@@ -15,16 +15,11 @@ const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "goog
 pub(crate) fn program() -> &'static Path {
     static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| {
         installed().unwrap_or_else(|| {
-            install();
+            install("chromium");
             installed().expect("apt-get has installed chromium")
         })
     });
     &PROGRAM
-}
-
-/// Arguments without which it does not start here: root has no sandbox.
-pub(crate) fn arguments() -> &'static [&'static str] {
-    if is_root() { &["--no-sandbox"] } else { &[] }
 }
 
 fn installed() -> Option<PathBuf> {
@@ -34,9 +29,21 @@ fn installed() -> Option<PathBuf> {
     named.into_iter().chain(std::env::split_paths(&folders).flat_map(below)).find(|p| p.is_file())
 }
 
-fn install() {
-    assert!(is_root(), "no Chromium is on PATH: install it with `apt-get install chromium`");
-    for arguments in [&["update"][..], &["install", "-y", "--no-install-recommends", "chromium"]] {
+/// A program of Debian, installed from its package where it is missing.
+pub(crate) fn debian_program(name: &str, package: &str) -> PathBuf {
+    let found = || {
+        let folders = std::env::var_os("PATH").unwrap_or_default();
+        std::env::split_paths(&folders).map(|folder| folder.join(name)).find(|path| path.is_file())
+    };
+    found().unwrap_or_else(|| {
+        install(package);
+        found().expect("apt-get has installed it")
+    })
+}
+
+fn install(package: &str) {
+    assert!(is_root(), "{package} is missing: install it with `apt-get install {package}`");
+    for arguments in [&["update"][..], &["install", "-y", "--no-install-recommends", package]] {
         let status = Command::new("apt-get")
             .env("DEBIAN_FRONTEND", "noninteractive")
             .args(arguments)
@@ -46,6 +53,7 @@ fn install() {
     }
 }
 
-fn is_root() -> bool {
+/// Whether this is root, for whom Chromium has no sandbox.
+pub(crate) fn is_root() -> bool {
     std::fs::metadata("/proc/self").is_ok_and(|own| own.uid() == 0)
 }

@@ -7,7 +7,6 @@ mod architecture;
 mod bad_input;
 mod calm_water_is_foretold;
 mod campaign_folder;
-#[expect(dead_code, reason = "the stories that look through it come next")]
 mod chromium;
 mod decays_are_identified;
 mod dense_posterior;
@@ -46,6 +45,7 @@ mod the_paper_campaign_is_covered;
 mod the_plan_is_followed;
 mod the_posterior_is_calibrated;
 mod the_report_is_complete_and_self_contained;
+mod the_report_is_printed;
 mod the_report_is_read_at_a_glance;
 mod the_simulated_tank_keeps_its_script;
 mod the_simulated_tank_writes_campaigns;

@@ -15,6 +15,7 @@ mod live;
 mod names;
 mod overview;
 mod play;
+mod printing;
 mod read_ahead;
 mod survey;
 mod workers;
@@ -34,6 +35,7 @@ pub use files::{REPORT_PAGE, WriteError, results_folder, write_results, write_ru
 pub use listening::FoundRun;
 pub use live::{Found, LiveResults, LiveRuns, LiveStep, forget_histories, live};
 pub use names::labels;
+pub use printing::{BROWSER_VARIABLE, PRINTED_REPORT, PrintError, print_report};
 pub use survey::{Surveyed, survey};
 
 use collect::Collector;

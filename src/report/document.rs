@@ -20,7 +20,7 @@ pub(super) fn page(title: &str, body: &Markup) -> Markup {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (title) }
-                style { (PreEscaped(STYLE)) }
+                style { (PreEscaped(STYLE)) (PreEscaped(running_head(title))) }
             }
             body {
                 (body)
@@ -31,6 +31,17 @@ pub(super) fn page(title: &str, body: &Markup) -> Markup {
             }
         }
     }
+}
+
+/// The rule that prints the title at the head of every sheet.
+fn running_head(title: &str) -> String {
+    // What ends a string of CSS, or the element that holds the rule, is written by its number.
+    let escaped = title.chars().map(|letter| match letter {
+        '"' | '\\' | '<' | '>' | '&' => format!("\\{:x} ", u32::from(letter)),
+        letter if letter.is_control() => " ".to_owned(),
+        letter => letter.to_string(),
+    });
+    format!("@page {{ @top-left {{ content: \"{}\"; }} }}", escaped.collect::<String>())
 }
 
 /// A section with its heading; `id` is unique on its page.

@@ -1,5 +1,6 @@
 //! What the customer gets: pages with figures, tables, the JSON contract.
 
+mod book;
 mod campaign_page;
 mod csv_tables;
 mod damping_table;
@@ -21,6 +22,7 @@ mod whole_file;
 
 use std::path::{Path, PathBuf};
 
+pub use book::book;
 pub use csv_tables::csv_tables;
 pub use damping_table::damping_table;
 pub use diagnosis_json::{DIAGNOSIS_SCHEMA, diagnosis_json};
@@ -41,6 +43,14 @@ pub enum ReportError {
         path.display()
     )]
     Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A page that was written cannot be read again.
+    #[error("report file \"{}\": {source}", path.display())]
+    Read {
         /// The file.
         path: PathBuf,
         /// What the system said.
