@@ -50,5 +50,6 @@ mod the_report_is_read_at_a_glance;
 mod the_simulated_tank_keeps_its_script;
 mod the_simulated_tank_writes_campaigns;
 mod the_tables_and_the_catalogue_agree_with_the_results;
+mod what_is_left_unsure_is_told;
 mod what_the_simulation_lacks_is_named;
 mod wrong_units;

@@ -4,10 +4,11 @@ use std::f64::consts::PI;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
+use crate::synthetic_roll::{STEP_S, Truth};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use replay::Columns;
-use rolltank::campaign::{Campaign, Live, Plan, Recording, Tank};
+use rolltank::campaign::{Campaign, Live, Plan, Recording, Tank, Trueness};
 use rolltank::hull::{Hull, Water};
 use rolltank::inverse::estimate::Estimate;
 use rolltank::inverse::identification::{
@@ -17,8 +18,6 @@ use rolltank::inverse::identification::{
 use rolltank::results::{IdentifiedRun, Overview, RejectedStretch, Results, Sampling};
 use rolltank::roll::exciting_moment::{Arm, Exciter};
 use rolltank::run::{Run, RunEnd, RunKind, Series, Still};
-
-use crate::synthetic_roll::{STEP_S, Truth};
 
 /// Noise of the roll channel [rad].
 const NOISE_RAD: f64 = 0.000_9;
@@ -67,6 +66,7 @@ pub(crate) fn campaign(name: &str) -> Campaign {
         model: None,
         live: Live::default(),
         plan: Plan::default(),
+        trueness: Trueness::default(),
     }
 }
 

@@ -36,8 +36,8 @@ fn words(pdf: &Path) -> Vec<Word> {
         sheet += usize::from(line.trim_start().starts_with("<page "));
         let Some(word) = line.trim_start().strip_prefix("<word ") else { continue };
         let mut parts = word.split('"');
-        let edges = [(); 4].map(|()| parts.nth(1).unwrap().parse().unwrap());
-        let text = word.split_once('>').unwrap().1.trim_end_matches("</word>").to_owned();
+        let edges = [(); 4].map(|()| parts.nth(1).expect("an edge").parse().expect("a number"));
+        let text = word.split_once('>').expect("a tag").1.trim_end_matches("</word>").to_owned();
         words.push(Word { text, sheet, edges });
     }
     words
@@ -70,18 +70,19 @@ fn assert_readable(pdf: &Path) {
 fn assert_runs_agree(pdf: &Path, document: &Value) {
     let layout = text(pdf, "-layout");
     let lines: Vec<&str> = layout.lines().collect();
-    for run in document["runs"].as_array().unwrap() {
-        let (id, kind) = (run["id"].as_str().unwrap(), run["kind"].as_str().unwrap());
+    for run in document["runs"].as_array().expect("runs") {
+        let (id, kind) =
+            (run["id"].as_str().expect("an id"), run["kind"].as_str().expect("a kind"));
         let is_row = |line: &str| {
             let mut words = line.split_whitespace();
             words.next() == Some(id) && words.next() == Some(kind)
         };
         let at = lines.iter().position(|line| is_row(line));
         let at = at.unwrap_or_else(|| panic!("{id} is not in the table of runs"));
-        let condition = run["condition"].as_str().unwrap();
+        let condition = run["condition"].as_str().expect("a condition");
         let means = lines[at].split_once(condition).expect("its condition").1.split_whitespace();
-        let five = run["equivalent_damping_per_s"].as_array().unwrap().iter();
-        let five = &five.clone().find(|at| at["amplitude_deg"] == 5.0).unwrap()["value"];
+        let five = run["equivalent_damping_per_s"].as_array().expect("a list").iter();
+        let five = &five.clone().find(|at| at["amplitude_deg"] == 5.0).expect("5 deg")["value"];
         let estimates = [&run["natural_frequency_rad_s"], &run["b1_per_s"], &run["b3_s"], five];
         let mut exact = vec![&run["froude"]];
         exact.extend(estimates.map(|estimate| &estimate["mean"]));

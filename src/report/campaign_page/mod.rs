@@ -2,6 +2,8 @@
 
 mod alike;
 mod at_speeds;
+mod budget;
+mod compared;
 mod conditions;
 mod damping_against_froude;
 mod diagnosis;
@@ -19,6 +21,7 @@ mod peak_moment;
 mod plan;
 mod recordings_to_judge;
 mod rejected;
+mod repeats;
 mod runs;
 
 use maud::{Markup, html};
@@ -30,13 +33,16 @@ use crate::inverse::identification::ForcedResponse;
 use crate::results::{IdentifiedRun, Results};
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&CampaignPage) -> Option<Markup>; 18] = [
+const PARTS: [fn(&CampaignPage) -> Option<Markup>; 21] = [
     at_speeds::part,
     diagnosis::part,
     law_gaps::part,
     damping_against_froude::part,
     froude_law::part,
     equivalent_damping::part,
+    compared::part,
+    repeats::part,
+    budget::part,
     conditions::part,
     particulars::part,
     runs::part,
