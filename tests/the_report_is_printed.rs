@@ -138,6 +138,26 @@ fn the_command_prints_a_campaign() {
 }
 
 #[test]
+fn the_appendix_knows_each_recording_by_the_sum_that_sha256sum_prints() {
+    let folder = CampaignFolder::new();
+    assert_eq!(rolltank(folder.path(), &["replay", ".", "--seed", "7"]).exit, 0);
+    let results = folder.path().join("results");
+    let appendix = fs::read_to_string(results.join("appendix.json")).unwrap();
+    let appendix: Value = serde_json::from_str(&appendix).unwrap();
+    let recording = folder.path().join("pass_01.csv");
+    let output = Command::new("sha256sum").arg(&recording).output().expect("coreutils are there");
+    let sum = String::from_utf8(output.stdout).unwrap();
+    let sum = sum.split_whitespace().next().unwrap();
+    assert_eq!(appendix["files"][0]["sha256"], sum);
+    assert_eq!(appendix["files"][0]["n_bytes"], fs::metadata(recording).unwrap().len());
+    assert_eq!((&appendix["seed"], &appendix["version"]), (&7.into(), &"0.1.0".into()));
+    let page = fs::read_to_string(results.join("appendix.html")).unwrap();
+    assert!(page.contains(sum) && page.contains("0.1.0 with seed 7"));
+    let campaign = fs::read_to_string(results.join("index.html")).unwrap();
+    assert!(campaign.contains("href=\"appendix.html\""));
+}
+
+#[test]
 fn without_a_browser_the_pages_are_there_and_the_error_says_what_to_do() {
     let folder = CampaignFolder::new();
     let report = ["report", ".", "-o", "results/paper", "--pdf"];

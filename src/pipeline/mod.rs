@@ -3,6 +3,7 @@
 //! One thread reads and finds runs, one per core identifies them, and the caller's thread takes
 //! them in the order in which they ended; short queues between keep the memory bounded.
 
+mod appendix;
 mod asking;
 mod claims;
 mod collect;
@@ -17,6 +18,7 @@ mod overview;
 mod play;
 mod printing;
 mod read_ahead;
+mod sha256;
 mod survey;
 mod workers;
 
@@ -29,6 +31,7 @@ use crate::campaign::Campaign;
 use crate::inverse::identification::Method;
 use crate::results::{IdentifiedRun, Overview, Results};
 
+pub use appendix::write_appendix;
 pub use diagnosing::Observed;
 pub use error::PipelineError;
 pub use files::{REPORT_PAGE, WriteError, results_folder, write_results, write_run_page};

@@ -6,12 +6,13 @@ use std::path::Path;
 use maud::{Markup, PreEscaped, html};
 
 use super::document::{self, run_file_name, run_link};
-use super::{DIAGNOSIS_PAGE, ReportError};
+use super::{APPENDIX_PAGE, DIAGNOSIS_PAGE, ReportError};
 
 /// The campaign's page in a report folder.
 const CAMPAIGN_PAGE: &str = "index.html";
 
-/// The campaign's page, the diagnosis, then every run, each from a new sheet on.
+/// The campaign's page, the diagnosis, then every run, the appendix, each from a new sheet
+/// on.
 ///
 /// Links between the pages lead within the document.
 ///
@@ -22,6 +23,9 @@ pub fn book(campaign: &str, ids: &[&str], dir: &Path) -> Result<String, ReportEr
     pages.push((DIAGNOSIS_PAGE.to_owned(), DIAGNOSIS_PAGE.to_owned()));
     for id in ids {
         pages.push((run_file_name(id)?, run_link(id)));
+    }
+    if dir.join(APPENDIX_PAGE).is_file() {
+        pages.push((APPENDIX_PAGE.to_owned(), APPENDIX_PAGE.to_owned()));
     }
     let mut sheets = Vec::new();
     for (index, (name, _)) in pages.iter().enumerate() {

@@ -26,7 +26,7 @@ mod runs;
 
 use maud::{Markup, html};
 
-use super::{document, field_units::FieldUnits, figure::Figure, glossary};
+use super::{APPENDIX_PAGE, document, field_units::FieldUnits, figure::Figure, glossary};
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
 use crate::inverse::identification::ForcedResponse;
@@ -100,6 +100,7 @@ pub(super) fn html(
     campaign: &Campaign,
     results: &Results,
     diagnosis: Option<&Diagnosis>,
+    has_appendix: bool,
 ) -> Markup {
     let page = CampaignPage { campaign, results, diagnosis };
     let (refused, changeovers) = results.refusals_and_changeovers();
@@ -113,6 +114,10 @@ pub(super) fn html(
                 ", " (counted(changeovers.len(), "changeover")) " between excitations left out"
             }
             ". Model scale, SI units; means with central 95 % credible intervals."
+            @if has_appendix {
+                " Instruments, calibrations and check sums are in the "
+                a href=(APPENDIX_PAGE) { "appendix" } "."
+            }
         }
         @if results.runs.is_empty() {
             p.warning { "No run was identified; the reasons are listed below." }
