@@ -32,7 +32,7 @@ const LAYERS: [&str; 23] = [
 ];
 
 /// Crates that only some layers or workspace members may name, each with its owners.
-const OWNERS: [(&str, &[&str]); 25] = [
+const OWNERS: [(&str, &[&str]); 27] = [
     ("clap", &["src/main", "src/command"]),
     ("indicatif", &["src/command"]),
     ("tracing_subscriber", &["src/main"]),
@@ -58,6 +58,8 @@ const OWNERS: [(&str, &[&str]); 25] = [
         ],
     ),
     ("csv", &["src/campaign/plan_table", "src/report", "replay/src"]),
+    ("parquet", &["src/report/tables", "src/report/mod"]),
+    ("sha2", &["src/pipeline/sha256"]),
     ("mcap", &["replay/src"]),
     ("tokio", &["src/live", "src/page"]),
     ("axum", &["src/page"]),

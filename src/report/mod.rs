@@ -101,6 +101,14 @@ pub enum ReportError {
         /// What the writer said.
         source: csv::Error,
     },
+    /// A table could not be written as Parquet.
+    #[error("table \"{name}\": {source}")]
+    Parquet {
+        /// Name of the table's file.
+        name: &'static str,
+        /// What the writer said.
+        source: parquet::errors::ParquetError,
+    },
 }
 
 /// Writes the page of one run to `dir` as soon as the run is identified; returns its path.

@@ -4,7 +4,6 @@ mod contents;
 mod csv_file;
 mod moment_history;
 mod parquet_file;
-mod thrift;
 
 use std::path::{Path, PathBuf};
 
@@ -63,11 +62,15 @@ pub fn export_tables(
 }
 
 fn written(table: &Table, format: TableFormat, dir: &Path) -> Result<PathBuf, ReportError> {
-    let (bytes, ending) = match format {
-        TableFormat::Csv => (csv_file::bytes(table), "csv"),
-        TableFormat::Parquet => (Ok(parquet_file::bytes(table)), "parquet"),
-    };
     let name = table.name;
-    let bytes = bytes.map_err(|source| ReportError::Table { name, source })?;
+    let (bytes, ending) = match format {
+        TableFormat::Csv => {
+            (csv_file::bytes(table).map_err(|source| ReportError::Table { name, source })?, "csv")
+        }
+        TableFormat::Parquet => {
+            let bytes = parquet_file::bytes(table);
+            (bytes.map_err(|source| ReportError::Parquet { name, source })?, "parquet")
+        }
+    };
     whole_file::write(dir, &format!("{name}.{ending}"), &bytes)
 }

@@ -1,111 +1,68 @@
-//! A table as Apache Parquet: one row group, one uncompressed page a column, plain encoding.
-//!
-//! This is the least of the format that every reader takes, and it needs no dependency; the crate
-//! `parquet` without its features costs 14 crates and half a minute of building. Numbers that are
-//! not known are null. Field numbers are those of `parquet.thrift`, format version 1.
+//! A table as Apache Parquet: one row group, and null for what is not known.
 
-use super::thrift::{Struct, varint};
+use std::sync::Arc;
+
+use parquet::basic::{LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType};
+use parquet::errors::Result;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
+use parquet::schema::types::{Type, TypePtr};
+
 use super::{Cell, Table};
 
-const MAGIC: &[u8; 4] = b"PAR1";
-/// Physical types, encodings and the rest, by their numbers in `parquet.thrift`.
-const BOOLEAN: i32 = 0;
-const DOUBLE: i32 = 5;
-const BYTE_ARRAY: i32 = 6;
-const OPTIONAL: i32 = 1;
-const UTF8: i32 = 0;
-const PLAIN: i32 = 0;
-const RLE: i32 = 3;
-const UNCOMPRESSED: i32 = 0;
-const DATA_PAGE: i32 = 0;
-
 /// The bytes of the file.
-pub(super) fn bytes(table: &Table) -> Vec<u8> {
-    let mut file = MAGIC.to_vec();
-    let n_columns = table.headers.len();
-    let mut elements = vec![Struct::default().text(4, table.name).int(5, n_columns as i32)];
-    let mut chunks = Vec::new();
-    for (index, header) in table.headers.iter().enumerate() {
-        let cells: Vec<&Cell> = table.rows.iter().map(|row| &row[index]).collect();
-        let kind = physical_type(&cells);
-        let element = Struct::default().int(1, kind).int(3, OPTIONAL).text(4, header);
-        elements.push(if kind == BYTE_ARRAY { element.int(6, UTF8) } else { element });
-        let offset = file.len();
-        file.extend(page(&cells));
-        let n_bytes = file.len() - offset;
-        let column = Struct::default()
-            .int(1, kind)
-            .ints(2, &[PLAIN, RLE])
-            .texts(3, &[header])
-            .int(4, UNCOMPRESSED)
-            .long(5, cells.len())
-            .long(6, n_bytes)
-            .long(7, n_bytes)
-            .long(9, offset);
-        chunks.push(Struct::default().long(2, offset).inner(3, column));
+pub(super) fn bytes(table: &Table) -> Result<Vec<u8>> {
+    let columns: Vec<Vec<&Cell>> = (0..table.headers.len())
+        .map(|index| table.rows.iter().map(|row| &row[index]).collect())
+        .collect();
+    let fields = table.headers.iter().zip(&columns).map(|(name, cells)| field(name, cells));
+    let schema = Type::group_type_builder(table.name).with_fields(fields.collect::<Result<_>>()?);
+    let made_by = concat!("rolltank version ", env!("CARGO_PKG_VERSION"));
+    let properties = WriterProperties::builder().set_created_by(made_by.to_owned()).build();
+    let mut file =
+        SerializedFileWriter::new(Vec::new(), Arc::new(schema.build()?), Arc::new(properties))?;
+    let mut group = file.next_row_group()?;
+    for cells in &columns {
+        if let Some(mut column) = group.next_column()? {
+            write(&mut column, cells)?;
+            column.close()?;
+        }
     }
-    let n_rows = table.rows.len();
-    let group = Struct::default().inners(1, chunks).long(2, file.len() - 4).long(3, n_rows);
-    let metadata = Struct::default()
-        .int(1, 1)
-        .inners(2, elements)
-        .long(3, n_rows)
-        .inners(4, vec![group])
-        .text(6, concat!("rolltank version ", env!("CARGO_PKG_VERSION")))
-        .finish();
-    file.extend(&metadata);
-    file.extend((metadata.len() as u32).to_le_bytes());
-    file.extend(MAGIC);
-    file
+    group.close()?;
+    file.into_inner()
 }
 
 /// A column without rows is one of numbers.
-fn physical_type(cells: &[&Cell]) -> i32 {
-    match cells.first() {
-        Some(Cell::Text(_)) => BYTE_ARRAY,
-        Some(Cell::Flag(_)) => BOOLEAN,
-        Some(Cell::Number(_)) | None => DOUBLE,
-    }
+fn field(name: &str, cells: &[&Cell]) -> Result<TypePtr> {
+    let (physical, logical) = match cells.first() {
+        Some(Cell::Text(_)) => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+        Some(Cell::Flag(_)) => (Physical::BOOLEAN, None),
+        Some(Cell::Number(_)) | None => (Physical::DOUBLE, None),
+    };
+    let field = Type::primitive_type_builder(name, physical)
+        .with_repetition(Repetition::OPTIONAL)
+        .with_logical_type(logical);
+    Ok(Arc::new(field.build()?))
 }
 
-/// Header and content of the one page of a column.
-fn page(cells: &[&Cell]) -> Vec<u8> {
+fn write(column: &mut SerializedColumnWriter<'_>, cells: &[&Cell]) -> Result<()> {
     let is_known = |cell: &Cell| !matches!(cell, Cell::Number(number) if !number.is_finite());
-    let known: Vec<bool> = cells.iter().map(|cell| is_known(cell)).collect();
-    let levels = levels(&known);
-    let mut content = (levels.len() as u32).to_le_bytes().to_vec();
-    content.extend(levels);
-    let mut flags = Vec::new();
+    let known: Vec<i16> = cells.iter().map(|cell| i16::from(is_known(cell))).collect();
+    let (mut numbers, mut flags, mut texts) = (Vec::new(), Vec::new(), Vec::new());
     for cell in cells.iter().filter(|cell| is_known(cell)) {
         match cell {
-            Cell::Number(number) => content.extend(number.to_le_bytes()),
+            Cell::Number(number) => numbers.push(*number),
             Cell::Flag(flag) => flags.push(*flag),
-            Cell::Text(text) => {
-                content.extend((text.len() as u32).to_le_bytes());
-                content.extend(text.as_bytes());
-            }
+            Cell::Text(text) => texts.push(ByteArray::from(text.as_str())),
         }
     }
-    // Flags are packed, the first in the lowest bit.
-    content.extend(
-        flags
-            .chunks(8)
-            .map(|eight| eight.iter().rev().fold(0, |byte, flag| byte << 1 | u8::from(*flag))),
-    );
-    let data = Struct::default().int(1, cells.len() as i32).int(2, PLAIN).int(3, RLE).int(4, RLE);
-    let size = content.len() as i32;
-    let header = Struct::default().int(1, DATA_PAGE).int(2, size).int(3, size).inner(5, data);
-    let mut page = header.finish();
-    page.extend(content);
-    page
-}
-
-/// Which cells are known, in runs of equal ones.
-fn levels(known: &[bool]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    for run in known.chunk_by(|a, b| a == b) {
-        varint(&mut bytes, (run.len() as u64) << 1);
-        bytes.push(u8::from(run[0]));
-    }
-    bytes
+    match cells.first() {
+        Some(Cell::Text(_)) => {
+            column.typed::<ByteArrayType>().write_batch(&texts, Some(&known), None)
+        }
+        Some(Cell::Flag(_)) => column.typed::<BoolType>().write_batch(&flags, Some(&known), None),
+        _ => column.typed::<DoubleType>().write_batch(&numbers, Some(&known), None),
+    }?;
+    Ok(())
 }
