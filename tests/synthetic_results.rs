@@ -30,18 +30,15 @@ const CONDITIONS: [(&str, f64, f64, f64, f64); 2] =
 
 /// The paper's model and tank, with one recording per decay and per forced run.
 pub(crate) fn campaign(name: &str) -> Campaign {
-    let mut recordings = Vec::new();
-    for (condition, ..) in CONDITIONS {
-        for (index, froude) in FROUDE.into_iter().enumerate() {
-            recordings.push(Recording {
-                name: format!("{}/pass_{:02}.csv", condition.replace(' ', "_"), index + 1),
-                files: Vec::new(),
-                condition: condition.to_owned(),
-                speed_m_s: Some(froude * 4.952),
-                line: None,
-            });
-        }
-    }
+    let recordings = CONDITIONS.iter().flat_map(|(condition, ..)| {
+        FROUDE.iter().enumerate().map(move |(index, froude)| Recording {
+            name: format!("{}/pass_{:02}.csv", condition.replace(' ', "_"), index + 1),
+            files: Vec::new(),
+            condition: (*condition).to_owned(),
+            speed_m_s: Some(froude * 4.952),
+            line: None,
+        })
+    });
     Campaign {
         folder: PathBuf::from("campaign"),
         name: name.to_owned(),
@@ -61,7 +58,7 @@ pub(crate) fn campaign(name: &str) -> Campaign {
         },
         exciter: Some(Exciter { moment_arm_m: 0.43, arm: Arm::Constant, force_sign: 1.0 }),
         columns: Columns::default(),
-        recordings,
+        recordings: recordings.collect(),
         model: None,
         judgements: rolltank::judgement::Judgements::default(),
         live: Live::default(),
