@@ -22,6 +22,8 @@ pub mod results;
 
 pub mod procedure;
 
+pub mod uncertainty;
+
 pub mod progress;
 
 pub mod diagnosis;

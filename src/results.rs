@@ -1,6 +1,6 @@
 //! What a campaign has taught so far: runs, rejections, damping against Froude number.
 
-use crate::inverse::identification::{FroudeLaw, Identification};
+use crate::inverse::identification::{EquivalentDamping, FroudeLaw, Identification};
 use crate::run::{Run, Series};
 
 /// One identified run in its place in the campaign.
@@ -22,6 +22,17 @@ pub struct IdentifiedRun {
     pub run: Run,
     /// What it says.
     pub identification: Identification,
+}
+
+/// Roll amplitude [deg] at which runs are compared with each other.
+pub const COMPARISON_DEG: f64 = 5.0;
+
+impl IdentifiedRun {
+    /// Equivalent damping at the amplitude at which runs are compared, if the run gives one.
+    pub fn at_comparison(&self) -> Option<&EquivalentDamping> {
+        let all = &self.identification.equivalent_damping;
+        all.iter().find(|at| (at.amplitude_deg - COMPARISON_DEG).abs() < 1e-9)
+    }
 }
 
 /// Mean sampling rates over a run.

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The layers of `src`, top first; each may name those below it.
-const LAYERS: [&str; 22] = [
+const LAYERS: [&str; 23] = [
     "main",
     "command",
     "bench",
@@ -18,6 +18,7 @@ const LAYERS: [&str; 22] = [
     "tank",
     "diagnosis",
     "progress",
+    "uncertainty",
     "procedure",
     "results",
     "inverse",
@@ -39,7 +40,7 @@ const OWNERS: [(&str, &[&str]); 25] = [
     ("plotters", &["src/report"]),
     ("rusqlite", &["src/catalogue"]),
     ("faer", &["src/inverse", "src/reference"]),
-    ("statrs", &["src/inverse", "src/bench"]),
+    ("statrs", &["src/inverse", "src/uncertainty", "src/bench"]),
     ("rand", &["src/inverse", "src/tank", "src/reference", "src/bench"]),
     ("rand_chacha", &["src/inverse", "src/tank", "src/reference", "src/bench"]),
     ("rand_distr", &["src/inverse", "src/tank", "src/reference", "src/bench"]),

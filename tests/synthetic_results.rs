@@ -7,7 +7,7 @@ use crate::synthetic_roll::{STEP_S, Truth};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use replay::Columns;
-use rolltank::campaign::{Campaign, Live, Plan, Recording, Tank};
+use rolltank::campaign::{Campaign, Live, Plan, Recording, Tank, Trueness};
 use rolltank::hull::{Hull, Water};
 use rolltank::inverse::estimate::Estimate;
 use rolltank::inverse::identification::{
@@ -66,6 +66,7 @@ pub(crate) fn campaign(name: &str) -> Campaign {
         judgements: rolltank::judgement::Judgements::default(),
         live: Live::default(),
         plan: Plan::default(),
+        trueness: Trueness::default(),
     }
 }
 

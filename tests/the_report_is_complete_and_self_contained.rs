@@ -176,7 +176,7 @@ fn every_number_of_the_run_table_is_the_number_of_the_json_rounded() {
 }
 
 /// Every number printed in `cell` is the exact one to half a unit of its last printed digit.
-fn assert_rounded(cell: &str, exact: &[&Value]) {
+pub(crate) fn assert_rounded(cell: &str, exact: &[&Value]) {
     let plain = cell.replace('\u{2212}', "-");
     let printed: Vec<_> =
         plain.split([' ', ',', '[', ']']).filter(|word| !word.is_empty()).collect();

@@ -58,6 +58,8 @@ pub struct Campaign {
     pub live: Live,
     /// The runs that are asked for, in the order in which they are to be made.
     pub plan: Plan,
+    /// How true instruments and particulars are.
+    pub trueness: Trueness,
 }
 
 impl Campaign {
@@ -89,6 +91,17 @@ pub struct Plan {
     pub file: String,
     /// Its rows in order; empty where there is no plan.
     pub rows: Vec<PlannedRuns>,
+}
+
+/// Relative standard uncertainties that no record can tell, each where it is known [-].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Trueness {
+    /// Of the gain of the roll channel.
+    pub roll_gain: Option<f64>,
+    /// Of the rate of the recorder's clock.
+    pub clock: Option<f64>,
+    /// Of the metacentric height.
+    pub gm: Option<f64>,
 }
 
 /// Limits of the tank that runs are checked against.

@@ -1,7 +1,7 @@
 //! The `[hull]`, `[water]`, `[tank]` and `[exciter]` tables, each value in its physical range.
 
-use super::Tank;
-use super::tree::{POSITIVE, SIGN, Section};
+use super::tree::{POSITIVE, SHARE, SIGN, Section};
+use super::{Tank, Trueness};
 use crate::hull::{Hull, Water};
 use crate::roll::exciting_moment::{Arm, Exciter};
 
@@ -11,6 +11,16 @@ const BLOCK_COEFFICIENT: [f64; 2] = [0.05, 1.0];
 const DENSITY_KG_M3: [f64; 2] = [950.0, 1100.0];
 /// Gravity on the surface of the earth [m/s2], 9.764 to 9.834, with a margin.
 const GRAVITY_M_S2: [f64; 2] = [9.75, 9.85];
+
+/// Reads `[uncertainty]`.
+pub(super) fn trueness(section: Option<&Section<'_>>) -> Trueness {
+    let Some(section) = section else { return Trueness::default() };
+    let share = |key| section.number(key, &SHARE);
+    let trueness =
+        Trueness { roll_gain: share("roll_gain"), clock: share("clock"), gm: share("gm") };
+    section.close();
+    trueness
+}
 
 /// Reads `[hull]`.
 pub(super) fn hull(section: &Section<'_>) -> Option<Hull> {

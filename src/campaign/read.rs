@@ -39,6 +39,7 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
     let hull = root.required_section("hull").and_then(|section| particulars::hull(&section));
     let water = particulars::water(root.section("water").as_ref());
     let tank = particulars::tank(root.section("tank").as_ref(), hull.as_ref());
+    let trueness = particulars::trueness(root.section("uncertainty").as_ref());
     let exciter =
         root.section("exciter").and_then(|section| particulars::exciter(&section, hull.as_ref()));
     let columns = root.section("columns").map(|section| columns::read(&section));
@@ -89,6 +90,7 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
         judgements,
         live,
         plan,
+        trueness,
     })
 }
 

@@ -90,6 +90,12 @@ pub(super) const COUNT: Limits = Limits {
     hold: |value| (1.0..=1000.0).contains(&value) && (value - value.round()).abs() < 1e-9,
 };
 
+/// A relative standard uncertainty.
+pub(super) const SHARE: Limits = Limits {
+    words: "a share of the value, 0 to 0.2, such as 0.005 for half a percent",
+    hold: |value| (0.0..=0.2).contains(&value),
+};
+
 /// A sign.
 pub(super) const SIGN: Limits =
     Limits { words: "1 or -1", hold: |value| [1.0, -1.0].contains(&value) };

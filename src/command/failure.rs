@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use super::Exit;
 use crate::campaign::Mistake;
 use crate::live::LiveError;
-use crate::pipeline::{PipelineError, WriteError};
+use crate::pipeline::{PipelineError, PrintError, WriteError};
 use crate::tank::{ScenarioError, TankError};
 use ::devices::channel::CalibrationError;
 use ::devices::{InstrumentError, Quantity};
@@ -84,6 +84,13 @@ pub enum Failure {
         /// Why not.
         #[from]
         source: WriteError,
+    },
+    /// The report cannot be printed.
+    #[error(transparent)]
+    Print {
+        /// Why not.
+        #[from]
+        source: PrintError,
     },
     /// A figure cannot be measured.
     #[error("the campaign cannot be measured: {0}")]

@@ -65,6 +65,7 @@ pub(super) fn replay(
             tracing::warn!("left out of the diagnosis: {reason}");
         }
         let diagnosis = observed.diagnosed(campaign);
+        pipeline::write_appendix(campaign, &options, dir)?;
         pipeline::write_results(campaign, &results, diagnosis.as_ref(), dir)?;
         report::write_diagnosis(campaign, diagnosis.as_ref(), dir)
             .map_err(pipeline::WriteError::from)?;

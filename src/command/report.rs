@@ -18,6 +18,9 @@ pub(super) struct Arguments {
     /// Folder for the report, outside the campaign or below its results/
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
+    /// Print all pages to report.pdf too, with an installed Chromium or Chrome
+    #[arg(long)]
+    pdf: bool,
     #[command(flatten)]
     identifying: Identifying,
 }
@@ -28,6 +31,10 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     require_apart(&campaign, dir)?;
     let replayed = replaying::replay(&campaign, arguments.identifying, None, Some(dir))?;
     writeln!(out, "report: {}", dir.join(pipeline::REPORT_PAGE).display())?;
+    if arguments.pdf {
+        let printed = pipeline::print_report(&campaign.name, &replayed.results, dir)?;
+        writeln!(out, "printed: {}", printed.display())?;
+    }
     Ok(replayed.exit)
 }
 

@@ -1,10 +1,11 @@
 //! Which effects these runs cannot tell apart.
 
 use super::growth::ENTERS;
+use super::layout::Layout;
 use super::scatter::scatters;
 use super::settle::Settled;
 use super::solve::solve;
-use super::survey::Survey;
+use super::survey::{Extension, Fit, Survey};
 use crate::model::effects;
 use crate::model::{Acts, Layer};
 
@@ -17,6 +18,53 @@ const SAME_SHARE: f64 = 0.01;
 /// restoring, its equal in any decay, back by 6.5 %.
 const ALIKE_SHARE: f64 = 0.1;
 
+/// A form that another takes at one value of its shape: it is no other cause where the runs say
+/// that the shape is within so much of it.
+const FORMS: [Form; 1] = [Form {
+    wide: "damping.power_law",
+    shape: "p",
+    at: 2.0,
+    within: 0.25,
+    narrow: "damping.quadratic",
+}];
+
+/// A form of an effect that is another effect.
+pub(super) struct Form {
+    wide: &'static str,
+    shape: &'static str,
+    at: f64,
+    within: f64,
+    narrow: &'static str,
+}
+
+/// Whether a rival is the favourite itself, its shape left open.
+fn is_form_of(survey: &Survey, rival: &Settled, favourite: &Settled) -> bool {
+    let Some(narrow) = favourite.fit.extensions.last() else { return false };
+    let Some((form, shapes)) = open_shapes(survey, &rival.fit, narrow.effect.id) else {
+        return false;
+    };
+    shapes.into_iter().all(|(value, column)| {
+        let sd = rival.solution.covariance[column][column].max(0.0).sqrt();
+        (value - form.at).abs() + 2.0 * sd < form.within
+    })
+}
+
+/// The shapes that the newest effect of a fit leaves open beside a narrower form of it: value and
+/// column of each set; none where it is no wider form.
+pub(super) fn open_shapes(
+    survey: &Survey,
+    fit: &Fit,
+    narrow: &str,
+) -> Option<(&'static Form, Vec<(f64, usize)>)> {
+    let e = fit.extensions.len().checked_sub(1)?;
+    let Extension { effect, slots, .. } = &fit.extensions[e];
+    let form = FORMS.iter().find(|form| form.wide == effect.id && form.narrow == narrow)?;
+    let k = (0..effect.n_parameters()).find(|k| effect.parameter(*k).symbol == form.shape)?;
+    let layout = Layout::new(survey, fit);
+    let shapes = slots.iter().enumerate();
+    Some((form, shapes.map(|(s, values)| (values[k], layout.parameter(fit, e, s, k))).collect()))
+}
+
 /// Whether these runs cannot tell a rival from the favourite: it is as probable, or explains all
 /// but a hundredth of the same, or falls a little behind, by less than what the favourite itself
 /// leaves: `left`, in units of the noise's variance.
@@ -27,7 +75,7 @@ pub(super) fn is_same(
     rival: &Settled,
     left: f64,
 ) -> bool {
-    if relabels_most(survey, rival) {
+    if relabels_most(survey, rival) || is_form_of(survey, rival, favourite) {
         return false;
     }
     let behind = favourite.log_evidence - rival.log_evidence;

@@ -1,7 +1,7 @@
 //! The grown model looked back on: effects that are not missed leave, others may take their place.
 
 use super::alike::{SAME, contains, is_same};
-use super::growth::{ENTERS, Entered, excess, leftovers};
+use super::growth::{ENTERS, Entered, leftovers, sure_excess};
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score};
 use super::settle::{Settled, settle};
@@ -39,7 +39,7 @@ pub(super) fn check_backward(
             .take(4)
             .collect();
         let tried = fit_all(survey, &without, &rivals, noise);
-        let left = excess(&leftovers(survey, &current.fit));
+        let left = sure_excess(&leftovers(survey, &current.fit));
         entered[e].log_bayes_factor = missed;
         entered[e].equivalent_to = tried
             .iter()

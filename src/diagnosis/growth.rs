@@ -203,7 +203,7 @@ fn winner(
     let equivalent_to = plausible[1..]
         .iter()
         .filter(|one| !contains(one.id, best.id))
-        .filter(|one| is_same(survey, current, &best.settled, &one.settled, left))
+        .filter(|one| is_same(survey, current, &best.settled, &one.settled, sure_excess(&after)))
         .map(|one| one.id)
         .collect();
     let entered = Entered { id: best.id, log_bayes_factor, removed, equivalent_to };
@@ -228,6 +228,11 @@ fn explains_enough(before: &[Leftover], after: &[Leftover]) -> bool {
 /// What is left beyond the noise, in units of its variance.
 pub(super) fn excess(all: &[Leftover]) -> f64 {
     all.iter().map(|l| l.excess).sum()
+}
+
+/// The same of the channels in which something is left for sure: noise alone adds up too.
+pub(super) fn sure_excess(all: &[Leftover]) -> f64 {
+    all.iter().filter(|l| l.is_sure()).map(|l| l.excess).sum()
 }
 
 /// What a fit leaves of every channel of every run.

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::alike::open_shapes;
 use super::cores;
 use super::elimination::Products;
 use super::growth::{Grown, leftovers};
@@ -101,10 +102,11 @@ impl Rival {
     }
 }
 
-/// Half of the misfit that a rival would keep on a run that the favourite made.
+/// Half of the misfit that a rival would keep on a run that the favourite made, or the logarithm
+/// by which the run narrows the rival's shape.
 fn expected(
     survey: &Survey,
-    favourite: &Fit,
+    (favourite_id, favourite): (&str, &Fit),
     rival: &Rival,
     (plan, span_s): &(Plan, f64),
     left: [f64; 2],
@@ -123,7 +125,8 @@ fn expected(
     let mut fit = with_run(survey, known, &run, guess);
     let grown = grown_survey(survey, run);
     let scatter = rival.settled.solution.scatter;
-    let mut least = f64::INFINITY;
+    let mut left_over = f64::INFINITY;
+    let mut narrowed = None;
     // The rival may answer with all its numbers, as far as the runs so far let it.
     let mut terms = fit.terms(last);
     for _ in 0..RELINEARISED {
@@ -137,10 +140,18 @@ fn expected(
             .collect();
         summary.refer_back(&moved_by);
         let solved = OneMore::new(&rival.products, &grown, &fit, &summary, &scatter);
-        least = least.min(solved.least_misfit());
+        left_over = solved.least_misfit();
+        narrowed = open_shapes(survey, known, favourite_id).map(|(_, shapes)| {
+            let covariance = solved.eliminated.covariance();
+            let before = &rival.settled.solution.covariance;
+            let gains =
+                shapes.iter().map(|(_, c)| 0.5 * (before[*c][*c] / covariance[*c][*c]).ln());
+            gains.fold(f64::INFINITY, f64::min)
+        });
         (terms, fit.states[last]) = solved.moved(&grown, &fit, &summary);
     }
-    0.5 * (least - rival.least_misfit).max(0.0)
+    // Where the rival is the favourite with its shape left open, nothing but that shape parts them.
+    narrowed.unwrap_or_else(|| 0.5 * (left_over - rival.least_misfit).max(0.0))
 }
 
 /// The run that says most.
@@ -201,7 +212,7 @@ fn parting(
     let hardest = cores::each(plans.len(), |k| {
         settled
             .iter()
-            .map(|rival| expected(survey, &grown.last.fit, rival, &plans[k], left))
+            .map(|rival| expected(survey, (favourite, &grown.last.fit), rival, &plans[k], left))
             .fold(f64::INFINITY, f64::min)
     });
     let mut best: Option<(f64, Plan)> = None;
@@ -214,10 +225,18 @@ fn parting(
     let mut parts = vec![favourite];
     parts.extend(rivals);
     let w = grown.last.fit.laws[survey.condition_of[0]].numbers[0];
+    let is_open = |rival: &Rival| open_shapes(survey, &rival.settled.fit, favourite).is_some();
+    let is_shape = settled.iter().any(is_open);
+    let log = if is_shape { 0.0 } else { log };
     Some(told(&plan, w, parts, log, |what| {
+        let rivals = rivals.join(", ");
+        if is_shape {
+            return format!(
+                "{what} tells the shape of {rivals} best, and whether it is {favourite}"
+            );
+        }
         format!(
-            "{what} parts {favourite} from {} by an expected log Bayes factor of {log:.0}",
-            rivals.join(", ")
+            "{what} parts {favourite} from {rivals} by an expected log Bayes factor of {log:.0}"
         )
     }))
 }

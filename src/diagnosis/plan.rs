@@ -24,9 +24,11 @@ const STEADY_SHARE: f64 = 0.7;
 const LONGEST_S: f64 = 25.0;
 const SHORTEST_S: f64 = 8.0;
 const SAMPLE_S: f64 = 0.02;
+/// Froude numbers at which the rod may be asked for [-].
+const FORCED_FROUDES: [f64; 3] = [0.0, 0.2, 0.4];
 /// Amplitude that may be asked for, over the largest that was rolled: beyond it the law is not
 /// known, nor whether the deck stays dry.
-const REACH: f64 = 1.7;
+const REACH: f64 = 1.8;
 
 /// Every run that the tank allows, with its length [s].
 pub(super) fn plans(tank: &Tank, survey: &Survey) -> Vec<(Plan, f64)> {
@@ -49,8 +51,8 @@ pub(super) fn plans(tank: &Tank, survey: &Survey) -> Vec<(Plan, f64)> {
         for amplitude_deg in [4.0, 10.0, 15.0, -15.0, 25.0] {
             plans.push((Plan { kind: RunKind::Decay, froude, amplitude_deg, tuning: 1.0 }, span_s));
         }
-        if froude == 0.0 || (froude - 0.2).abs() < 1e-9 {
-            for tuning in [0.75, 1.0, 1.2] {
+        if FORCED_FROUDES.iter().any(|f| (froude - f).abs() < 1e-9) {
+            for tuning in [0.75, 1.0, 1.2, 1.5] {
                 for amplitude_deg in [5.0, 10.0, 15.0] {
                     plans.push((
                         Plan { kind: RunKind::Forced, froude, amplitude_deg, tuning },

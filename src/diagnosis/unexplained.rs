@@ -50,7 +50,7 @@ pub struct Unexplained {
 }
 
 /// Instants kept a period of roll: beyond them the band only repeats itself.
-const PER_PERIOD: f64 = 40.0;
+const PER_PERIOD: f64 = 24.0;
 
 impl Unexplained {
     /// Phase of the roll at each instant [rad], nil at a crest to starboard.

@@ -1,16 +1,11 @@
 //! Damping against Froude number: the law (4.3) over the runs of one condition.
-//!
-//! Runs of one Froude number differ by more than their own intervals (the paper's by 50 to 100
-//! times), so the scatter from run to run is an unknown of the law, with the scale-free prior that
-//! makes the intervals Student's when it dominates.
 
-use faer::Mat;
-use faer::linalg::solvers::{DenseSolveCore, Solve};
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::estimate::Estimate;
 use super::identification::FroudeLaw;
 use super::mixture::{self, Component};
+use super::scattered::{Node, combination, nodes, quadratic};
 
 /// What one run brings to the law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,17 +17,6 @@ pub struct Point {
     /// Cubic damping `b3` [s].
     pub b3_s: Estimate,
 }
-
-/// One node of the scatter: what the coefficients are, given it.
-struct Node {
-    weight: f64,
-    scatter: f64,
-    mean: Vec<f64>,
-    covariance: Mat<f64>,
-}
-
-/// Number of nodes of the scatter, evenly spaced in its logarithm.
-const N_NODES: usize = 80;
 
 /// Froude numbers at which the band is given.
 const N_FROUDE: u32 = 21;
@@ -46,36 +30,26 @@ pub fn froude_law(condition: &str, points: &[Point]) -> Option<FroudeLaw> {
     }
     let linear: Vec<(f64, f64)> = points.iter().map(|p| (p.b1_per_s.mean, p.b1_per_s.sd)).collect();
     let rows: Vec<Vec<f64>> = points.iter().map(|p| vec![1.0, p.froude.powi(2)]).collect();
-    let nodes = nodes(&rows, &linear);
+    let linear_nodes = nodes(&rows, &linear);
     let largest = points.iter().map(|p| p.froude.abs()).fold(0.0, f64::max);
     let froude: Vec<f64> =
         (0..N_FROUDE).map(|i| largest * f64::from(i) / f64::from(N_FROUDE - 1)).collect();
     let cubic: Vec<(f64, f64)> = points.iter().map(|p| (p.b3_s.mean, p.b3_s.sd)).collect();
-    let cubic_nodes = self::nodes(&vec![vec![1.0]; points.len()], &cubic);
+    let cubic_nodes = nodes(&vec![vec![1.0]; points.len()], &cubic);
     Some(FroudeLaw {
         condition: condition.to_owned(),
-        b0_per_s: combination(&nodes, &[1.0, 0.0]),
-        kappa: kappa(&nodes),
+        b0_per_s: combination(&linear_nodes, &[1.0, 0.0]),
+        kappa: kappa(&linear_nodes),
         b3_s: combination(&cubic_nodes, &[1.0]),
         scatter_per_s: mixture::estimate(
-            &nodes
+            &linear_nodes
                 .iter()
                 .map(|n| Component { weight: n.weight, mean: n.scatter, sd: 0.0 })
                 .collect::<Vec<_>>(),
         ),
-        b1_per_s: froude.iter().map(|fr| combination(&nodes, &[1.0, fr * fr])).collect(),
+        b1_per_s: froude.iter().map(|fr| combination(&linear_nodes, &[1.0, fr * fr])).collect(),
         froude,
     })
-}
-
-/// Estimate of a linear combination of the coefficients.
-fn combination(nodes: &[Node], weights: &[f64]) -> Estimate {
-    let component = |node: &Node| Component {
-        weight: node.weight,
-        mean: node.mean.iter().zip(weights).map(|(m, w)| m * w).sum(),
-        sd: quadratic(&node.covariance, weights).sqrt(),
-    };
-    mixture::estimate(&nodes.iter().map(component).collect::<Vec<_>>())
 }
 
 /// Estimate of the ratio of the slope to `b0`.
@@ -128,75 +102,6 @@ pub fn probability_below(points: &[Point], kappa: f64) -> f64 {
     let linear: Vec<(f64, f64)> = points.iter().map(|p| (p.b1_per_s.mean, p.b1_per_s.sd)).collect();
     let rows: Vec<Vec<f64>> = points.iter().map(|p| vec![1.0, p.froude.powi(2)]).collect();
     below(&nodes(&rows, &linear), kappa)
-}
-
-fn quadratic(matrix: &Mat<f64>, x: &[f64]) -> f64 {
-    let mut sum = 0.0;
-    for i in 0..x.len() {
-        for j in 0..x.len() {
-            sum += x[i] * matrix[(i, j)] * x[j];
-        }
-    }
-    sum.max(0.0)
-}
-
-/// Posterior of `y_i = x_i c + scatter + noise_i`, node by node of the scatter.
-fn nodes(rows: &[Vec<f64>], values: &[(f64, f64)]) -> Vec<Node> {
-    let n = rows.len();
-    let (p, freedom) = (rows[0].len(), n - rows[0].len());
-    let size = typical(values);
-    let noise = values.iter().map(|v| v.1).sum::<f64>() / n as f64;
-    // Below a tenth of the runs' own noise a scatter changes nothing; above the Student tail of the
-    // fewest degrees of freedom nothing is left.
-    let tail = StudentsT::new(0.0, 1.0, freedom as f64).map_or(100.0, |t| t.inverse_cdf(0.9999));
-    let low = (0.1 * noise).max(1e-6 * size).ln();
-    let high = (size * tail.min(1e3)).ln();
-    let mut nodes: Vec<Node> = (0..N_NODES)
-        .map(|i| {
-            let scatter = (low + (high - low) * i as f64 / (N_NODES - 1) as f64).exp();
-            node(rows, values, scatter, p)
-        })
-        .collect();
-    let top = nodes.iter().map(|n| n.weight).fold(f64::NEG_INFINITY, f64::max);
-    let total: f64 = nodes.iter().map(|n| (n.weight - top).exp()).sum();
-    for node in &mut nodes {
-        node.weight = (node.weight - top).exp() / total;
-    }
-    nodes.retain(|n| n.weight > 1e-9);
-    nodes
-}
-
-/// Spread of the values, or their size when they are all alike.
-fn typical(values: &[(f64, f64)]) -> f64 {
-    let n = values.len() as f64;
-    let mean = values.iter().map(|v| v.0).sum::<f64>() / n;
-    let spread = (values.iter().map(|v| (v.0 - mean).powi(2)).sum::<f64>() / n).sqrt();
-    spread.max(1e-3 * mean.abs()).max(f64::MIN_POSITIVE)
-}
-
-fn node(rows: &[Vec<f64>], values: &[(f64, f64)], scatter: f64, p: usize) -> Node {
-    let mut normal = Mat::<f64>::zeros(p, p);
-    let mut right = Mat::<f64>::zeros(p, 1);
-    let mut weight = 0.0;
-    for (row, (value, sd)) in rows.iter().zip(values) {
-        let variance = scatter.powi(2) + sd.powi(2);
-        weight -= 0.5 * variance.ln();
-        for i in 0..p {
-            right[(i, 0)] += row[i] * value / variance;
-            for j in 0..p {
-                normal[(i, j)] += row[i] * row[j] / variance;
-            }
-        }
-    }
-    let factor = normal.partial_piv_lu();
-    let mean = factor.solve(&right);
-    let covariance = factor.inverse();
-    for (row, (value, sd)) in rows.iter().zip(values) {
-        let fitted: f64 = (0..p).map(|i| row[i] * mean[(i, 0)]).sum();
-        weight -= 0.5 * (value - fitted).powi(2) / (scatter.powi(2) + sd.powi(2));
-    }
-    weight -= 0.5 * normal.determinant().ln();
-    Node { weight, scatter, mean: (0..p).map(|i| mean[(i, 0)]).collect(), covariance }
 }
 
 #[cfg(test)]

@@ -2,12 +2,14 @@
 
 pub mod decay;
 pub mod estimate;
+pub mod extinction;
 pub mod forced;
 pub mod froude_law;
 pub mod identification;
 pub mod mixture;
 pub mod paper;
 pub mod record;
+pub mod scattered;
 pub mod state_space;
 
 mod amplitudes;

@@ -3,6 +3,7 @@
 //! One thread reads and finds runs, one per core identifies them, and the caller's thread takes
 //! them in the order in which they ended; short queues between keep the memory bounded.
 
+mod appendix;
 mod asking;
 mod claims;
 mod collect;
@@ -16,7 +17,9 @@ mod live;
 mod names;
 mod overview;
 mod play;
+mod printing;
 mod read_ahead;
+mod sha256;
 mod survey;
 mod workers;
 
@@ -29,6 +32,7 @@ use crate::campaign::Campaign;
 use crate::inverse::identification::Method;
 use crate::results::{IdentifiedRun, Overview, Results};
 
+pub use appendix::write_appendix;
 pub use diagnosing::Observed;
 pub use error::PipelineError;
 pub use files::{REPORT_PAGE, WriteError, results_folder, write_results, write_run_page};
@@ -36,6 +40,7 @@ pub use judging::judged;
 pub use listening::FoundRun;
 pub use live::{Found, LiveResults, LiveRuns, LiveStep, forget_histories, live};
 pub use names::labels;
+pub use printing::{BROWSER_VARIABLE, PRINTED_REPORT, PrintError, print_report};
 pub use survey::{Surveyed, survey};
 
 use collect::Collector;

@@ -1,6 +1,5 @@
 //! The damping of a campaign as a plain-text table for the terminal.
 
-use super::field_units::COMPARISON_DEG;
 use super::number;
 use crate::inverse::estimate::Estimate;
 use crate::inverse::identification::{EquivalentDamping, FroudeLaw};
@@ -52,7 +51,7 @@ fn decay_row(run: &IdentifiedRun) -> [String; 5] {
         "decay".to_owned(),
         estimate(&fit.b1_per_s),
         estimate(&fit.b3_s),
-        at_comparison(run).map_or_else(|| number::UNKNOWN.to_owned(), comparison_cell),
+        run.at_comparison().map_or_else(|| number::UNKNOWN.to_owned(), comparison_cell),
     ]
 }
 
@@ -78,13 +77,8 @@ fn forced_row(runs: &[&IdentifiedRun]) -> [String; 5] {
         kind,
         range(fits().map(|fit| fit.b1_per_s).collect()),
         range(fits().map(|fit| fit.b3_s).collect()),
-        range(runs.iter().filter_map(|run| Some(at_comparison(run)?.fitted_per_s)).collect()),
+        range(runs.iter().filter_map(|run| Some(run.at_comparison()?.fitted_per_s)).collect()),
     ]
-}
-
-fn at_comparison(run: &IdentifiedRun) -> Option<&EquivalentDamping> {
-    let all = &run.identification.equivalent_damping;
-    all.iter().find(|at| (at.amplitude_deg - COMPARISON_DEG).abs() < 1e-9)
 }
 
 fn comparison_cell(at: &EquivalentDamping) -> String {

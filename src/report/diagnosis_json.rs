@@ -158,15 +158,20 @@ fn moments(left: &[Unexplained]) -> Vec<Value> {
             "share": left.share,
             "share_of_damping": left.share_of_damping,
             "share_of_instants_outside": left.outside,
-            "time_s": left.time_s,
-            "roll_rad": left.roll_rad,
-            "roll_rate_rad_per_s": left.rate_rad_per_s,
-            "roll_acceleration_rad_per_s2": left.acceleration_rad_per_s2,
-            "mean_n_m": left.mean_n_m,
-            "sd_n_m": left.sd_n_m,
+            "time_s": left.time_s.iter().map(|t| (t * 1e4).round() / 1e4).collect::<Vec<_>>(),
+            "roll_rad": brief(&left.roll_rad),
+            "roll_rate_rad_per_s": brief(&left.rate_rad_per_s),
+            "roll_acceleration_rad_per_s2": brief(&left.acceleration_rad_per_s2),
+            "mean_n_m": brief(&left.mean_n_m),
+            "sd_n_m": brief(&left.sd_n_m),
         })
     };
     left.iter().map(one).collect()
+}
+
+/// The same to five figures: histories are most of the file, and nobody knows them any better.
+fn brief(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|value| format!("{value:.4e}").parse().unwrap_or(*value)).collect()
 }
 
 /// Where most is left, in words.

@@ -20,7 +20,7 @@ pub(super) fn page(title: &str, body: &Markup) -> Markup {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (title) }
-                style { (PreEscaped(STYLE)) }
+                style { (PreEscaped(STYLE)) (PreEscaped(running_head(title))) }
             }
             body {
                 (body)
@@ -36,9 +36,23 @@ pub(super) fn page(title: &str, body: &Markup) -> Markup {
 /// A page of ours with its style sheet beside it, as a server gives it that lets no page bring
 /// styles of its own.
 pub(super) fn with_style_beside(page: &str, address: &str) -> String {
-    let within = html! { style { (PreEscaped(STYLE)) } }.into_string();
+    const END: &str = "</style>";
+    let (Some(from), Some(to)) = (page.find("<style>"), page.find(END)) else {
+        return page.to_owned();
+    };
     let beside = html! { link rel="stylesheet" href=(address); }.into_string();
-    page.replacen(&within, &beside, 1)
+    format!("{}{beside}{}", &page[..from], &page[to + END.len()..])
+}
+
+/// The rule that prints the title at the head of every sheet.
+fn running_head(title: &str) -> String {
+    // What ends a string of CSS, or the element that holds the rule, is written by its number.
+    let escaped = title.chars().map(|letter| match letter {
+        '"' | '\\' | '<' | '>' | '&' => format!("\\{:x} ", u32::from(letter)),
+        letter if letter.is_control() => " ".to_owned(),
+        letter => letter.to_string(),
+    });
+    format!("@page {{ @top-left {{ content: \"{}\"; }} }}", escaped.collect::<String>())
 }
 
 /// A section with its heading; `id` is unique on its page.

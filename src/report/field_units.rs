@@ -8,9 +8,6 @@ use crate::inverse::identification::{DampingFit, EquivalentDamping};
 use crate::results::IdentifiedRun;
 use crate::roll::damping::{critical_ratio, cubic_weight};
 
-/// Roll amplitude [deg] at which runs are compared with each other.
-pub(crate) const COMPARISON_DEG: f64 = 5.0;
-
 /// Turns coefficients per unit inertia into moments and ratios for one run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FieldUnits<'a> {
@@ -81,10 +78,15 @@ impl<'a> FieldUnits<'a> {
         self.damping_ratio(per_inertia).scaled(PI)
     }
 
+    /// Bertin's `N` [1/deg] of `b_eq` [1/s] at an amplitude: `dphi = N phi_m^2` per half cycle, so
+    /// that `N = pi b_eq / (2 w phi_m)`.
+    pub(crate) fn bertin_n_per_deg(&self, per_inertia: Estimate, amplitude_deg: f64) -> Estimate {
+        self.half_cycle_decrement(per_inertia).scaled(1.0 / amplitude_deg)
+    }
+
     /// Equivalent damping at the amplitude at which runs are compared, if the run gives one.
     pub(crate) fn at_comparison(&self) -> Option<&'a EquivalentDamping> {
-        let all = &self.run.identification.equivalent_damping;
-        all.iter().find(|at| (at.amplitude_deg - COMPARISON_DEG).abs() < 1e-9)
+        self.run.at_comparison()
     }
 }
 

@@ -27,7 +27,8 @@ pub(super) fn cells(answer: &Answer) -> Markup {
         unit => unit,
     };
     let number = |value: Option<f64>| match value {
-        Some(value) if unit.is_empty() => significant(value, 3),
+        // A count, whole or half.
+        Some(value) if unit.is_empty() => value.to_string(),
         Some(value) => format!("{} {unit}", significant(value, 3)),
         None => UNKNOWN.to_owned(),
     };

@@ -48,7 +48,10 @@ const SYMBOLS: &[Symbol] = &[
     ("ρ, g", "density of the water, gravity", "kg/m³, m/s²"),
     ("m", "mass of the model ρ ∇", "kg"),
     ("λ, σ", "smoothness of U, noise of the roll, as the paper's sampler draws them", "s⁴, rad"),
-    ("a, c, p", "coefficients of extinction; see the conventions", "–, 1/rad², –"),
+    ("a, c", "coefficients of extinction over half cycles; see the conventions", "–, 1/rad²"),
+    ("p, q", "coefficients of extinction over full cycles; see the conventions", "–, 1/deg"),
+    ("N", "Bertin's coefficient of extinction over half cycles", "1/deg"),
+    ("u, U", "standard and expanded uncertainty", "as the value"),
     ("k₃", "cubic restoring: K (φ + k₃ φ³)", "1/rad²"),
     ("rmse", "root mean square of measured less resimulated roll", "deg"),
 ];
@@ -73,8 +76,10 @@ const CONVENTIONS: &[&str] = &[
      next on the other side; so Δφ = a φ_{m} + c φ_{m}³ with a = (π/2) b₁/ω_{n} and c = (3π/8) \
      ω_{n} b₃, φ in rad.",
     "Full-cycle convention (p–q of MARIN): from one peak to the next on the same side, twice \
-     the half-cycle value, so p = 2a. The fitted law has a cubic term where p–q has a quadratic \
-     one; no q is quoted.",
+     the half-cycle value, Δφ/φ_{m} = p + q φ_{m}. It is fitted to the half cycles on its own: \
+     the fitted law has a cubic term where p–q has a quadratic one, so p is not 2a.",
+    "Bertin's N, in 1/deg: Δφ = N φ_{m}² per HALF cycle, so N = π b_{eq}/(2 ω_{n} φ_{m}), which \
+     depends on amplitude unless the damping is quadratic.",
     "Froude number is on L_{pp}: Fr = V/√(g L_{pp}), V the mean carriage speed over the run.",
     "Posterior means are printed with central 95 % credible intervals, mean [low, high], \
      rounded to two significant digits of the standard deviation.",

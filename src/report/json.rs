@@ -6,11 +6,13 @@ use super::field_units::FieldUnits;
 use super::json_beliefs::{BeliefsJson, CurvePointJson};
 use crate::campaign::Campaign;
 use crate::inverse::estimate::Estimate;
+use crate::inverse::extinction::{Extinction, extinction};
 use crate::inverse::identification::{Chain, ForcedResponse, FroudeLaw, HalfCycle, Method};
 use crate::procedure::{self, Answer, CampaignAnswer};
 use crate::progress::{Progress, progress};
 use crate::results::{IdentifiedRun, RejectedStretch, Results};
 use crate::run::RunEnd;
+use crate::uncertainty::{self, Budget, Comparison, Repeats};
 
 /// Name and version of the contract.
 pub const IDENTIFICATION_NAME: &str = "rolltank.identification/1";
@@ -33,6 +35,9 @@ pub fn identification_json(campaign: &Campaign, results: &Results) -> String {
         runs: results.runs.iter().map(|run| RunJson::new(campaign, run)).collect(),
         rejected: results.rejected.iter().map(RejectedJson::new).collect(),
         froude_law: results.froude_laws.iter().map(FroudeLawJson::new).collect(),
+        comparisons: uncertainty::comparisons(results),
+        repeats: uncertainty::repeats(results),
+        budgets: uncertainty::budgets(campaign, results),
         gates: procedure::of_campaign(results),
         plan: progress(campaign, &results.runs),
         notes: results
@@ -55,6 +60,9 @@ struct Document<'a> {
     runs: Vec<RunJson<'a>>,
     rejected: Vec<RejectedJson<'a>>,
     froude_law: Vec<FroudeLawJson<'a>>,
+    comparisons: Vec<Comparison>,
+    repeats: Vec<Repeats>,
+    budgets: Vec<Budget>,
     gates: Vec<CampaignAnswer>,
     plan: Progress,
     notes: Vec<NotesJson<'a>>,
@@ -81,6 +89,7 @@ struct RunJson<'a> {
     b3_s: Estimate,
     b1_b3_correlation: f64,
     equivalent_damping_per_s: Vec<EquivalentDampingJson>,
+    extinction: Option<Extinction>,
     half_cycles: Vec<HalfCycleJson>,
     damping_curve: Vec<CurvePointJson>,
     beliefs: Option<BeliefsJson>,
@@ -117,6 +126,7 @@ impl<'a> RunJson<'a> {
             b3_s: identification.damping.b3_s,
             b1_b3_correlation: identification.damping.correlation,
             equivalent_damping_per_s: EquivalentDampingJson::all(run, &units),
+            extinction: extinction(identification),
             half_cycles: identification.half_cycles.iter().map(HalfCycleJson::new).collect(),
             damping_curve: identification.damping_curve.iter().map(CurvePointJson::new).collect(),
             beliefs: identification.beliefs.as_ref().map(BeliefsJson::new),
@@ -141,6 +151,7 @@ struct EquivalentDampingJson {
     b44_hat: Estimate,
     damping_ratio: Estimate,
     half_cycle_decrement: Estimate,
+    bertin_n_per_deg: Estimate,
 }
 
 impl EquivalentDampingJson {
@@ -156,6 +167,7 @@ impl EquivalentDampingJson {
                 b44_hat: units.b44_hat(at.fitted_per_s),
                 damping_ratio: units.damping_ratio(at.fitted_per_s),
                 half_cycle_decrement: units.half_cycle_decrement(at.fitted_per_s),
+                bertin_n_per_deg: units.bertin_n_per_deg(at.fitted_per_s, at.amplitude_deg),
             })
             .collect()
     }

@@ -1,5 +1,7 @@
 //! What the customer gets: pages with figures, tables, the JSON contract.
 
+mod appendix;
+mod book;
 mod campaign_page;
 mod csv_tables;
 mod damping_table;
@@ -22,6 +24,8 @@ mod whole_file;
 
 use std::path::{Path, PathBuf};
 
+pub use appendix::{Appendix, AttachedInstrument, ChannelCalibration, RecordedFile};
+pub use book::book;
 pub use csv_tables::csv_tables;
 pub use damping_table::damping_table;
 pub use diagnosis_json::{DIAGNOSIS_SCHEMA, diagnosis_json};
@@ -72,6 +76,14 @@ pub enum ReportError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// A page that was written cannot be read again.
+    #[error("report file \"{}\": {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
     /// A run's name would lead out of the report folder.
     #[error(
         "run \"{id}\" cannot name a report file\n\
@@ -108,7 +120,8 @@ const DAMPING_FIGURE: &str = "damping_against_froude.svg";
 
 /// Writes the campaign's page, `index.html`, to `dir`; returns its path.
 ///
-/// With a diagnosis it leads to the page of [`write_diagnosis`]. Its figure of damping against
+/// With a diagnosis it leads to the page of [`write_diagnosis`], and to the appendix where there is
+/// one. Its figure of damping against
 /// Froude number is left beside it as a file of its own.
 pub fn write_campaign(
     campaign: &Campaign,
@@ -123,7 +136,8 @@ pub fn write_campaign(
         let drawing = figure.file().into_string();
         whole_file::write(dir, DAMPING_FIGURE, drawing.as_bytes())?;
     }
-    let page = campaign_page::html(campaign, results, diagnosis);
+    let has_appendix = dir.join(APPENDIX_PAGE).is_file();
+    let page = campaign_page::html(campaign, results, diagnosis, has_appendix);
     whole_file::write(dir, "index.html", page.into_string().as_bytes())
 }
 
@@ -140,6 +154,21 @@ pub fn write_diagnosis(
     whole_file::write(dir, "diagnosis.schema.json", DIAGNOSIS_SCHEMA.as_bytes())?;
     let page = diagnosis_page::html(&campaign.name, diagnosis);
     whole_file::write(dir, DIAGNOSIS_PAGE, page.into_string().as_bytes())
+}
+
+/// File name of the page of the appendix.
+const APPENDIX_PAGE: &str = "appendix.html";
+
+/// Writes the appendix, as a page and as JSON, to `dir`.
+pub fn write_appendix(
+    campaign: &Campaign,
+    appendix: &Appendix,
+    dir: &Path,
+) -> Result<(), ReportError> {
+    whole_file::write(dir, "appendix.json", appendix::json(appendix).as_bytes())?;
+    let page = appendix::page(&campaign.name, appendix);
+    whole_file::write(dir, APPENDIX_PAGE, page.into_string().as_bytes())?;
+    Ok(())
 }
 
 /// Writes the page of every run and the campaign's page to `dir`; returns the campaign's page.

@@ -19,5 +19,6 @@ pub(super) fn answer(run: &IdentifiedRun) -> Option<Answer> {
     };
     let duration_s = run.run.end_s - run.run.start_s;
     let n = duration_s * frequency_rad_s / std::f64::consts::TAU;
-    Some(Answer::at_least(GATE, n, N_PERIODS, format!("{n:.1} periods in {duration_s:.1} s")))
+    let whole = n.floor();
+    Some(Answer::at_least(GATE, whole, N_PERIODS, format!("{n:.1} periods in {duration_s:.1} s")))
 }

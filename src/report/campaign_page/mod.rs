@@ -2,6 +2,8 @@
 
 mod alike;
 mod at_speeds;
+mod budget;
+mod compared;
 mod conditions;
 mod damping_against_froude;
 mod diagnosis;
@@ -19,24 +21,28 @@ mod peak_moment;
 mod plan;
 mod recordings_to_judge;
 mod rejected;
+mod repeats;
 mod runs;
 
 use maud::{Markup, html};
 
-use super::{document, field_units::FieldUnits, figure::Figure, glossary};
+use super::{APPENDIX_PAGE, document, field_units::FieldUnits, figure::Figure, glossary};
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
 use crate::inverse::identification::ForcedResponse;
 use crate::results::{IdentifiedRun, Results};
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&CampaignPage) -> Option<Markup>; 18] = [
+const PARTS: [fn(&CampaignPage) -> Option<Markup>; 21] = [
     at_speeds::part,
     diagnosis::part,
     law_gaps::part,
     damping_against_froude::part,
     froude_law::part,
     equivalent_damping::part,
+    compared::part,
+    repeats::part,
+    budget::part,
     conditions::part,
     particulars::part,
     runs::part,
@@ -107,6 +113,7 @@ pub(super) fn html(
     campaign: &Campaign,
     results: &Results,
     diagnosis: Option<&Diagnosis>,
+    has_appendix: bool,
 ) -> Markup {
     let page = CampaignPage { campaign, results, diagnosis };
     let (refused, changeovers) = results.refusals_and_changeovers();
@@ -120,6 +127,10 @@ pub(super) fn html(
                 ", " (counted(changeovers.len(), "changeover")) " between excitations left out"
             }
             ". Model scale, SI units; means with central 95 % credible intervals."
+            @if has_appendix {
+                " Instruments, calibrations and check sums are in the "
+                a href=(APPENDIX_PAGE) { "appendix" } "."
+            }
         }
         @if results.runs.is_empty() {
             p.warning { "No run was identified; the reasons are listed below." }

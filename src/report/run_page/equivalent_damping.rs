@@ -25,10 +25,11 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
         ("B̂₄₄", "–"),
         ("ζ", "–"),
         ("Δφ/φ_{m} half cycle", "–"),
+        ("N", "1/deg"),
     ];
     let caption = "Equivalent damping of all forms of law together, or of the half cycles where no \
                    law holds; the second b_{eq} is always theirs. For the full-cycle decrement \
-                   (p–q) double the last column.";
+                   (p–q) double the last but one; N is Bertin's, Δφ = N φ_{m}² a half cycle.";
     Some(section(
         "equivalent-damping-section",
         "Equivalent damping",
@@ -58,6 +59,7 @@ fn rows(page: &RunPage) -> Vec<Markup> {
                 (estimate_cell(Some(&units.b44_hat(b))))
                 (estimate_cell(Some(&units.damping_ratio(b))))
                 (estimate_cell(Some(&units.half_cycle_decrement(b))))
+                (estimate_cell(Some(&units.bertin_n_per_deg(b, at.amplitude_deg))))
             }
         })
         .collect()

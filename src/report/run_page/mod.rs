@@ -3,6 +3,7 @@
 mod chain;
 mod coefficients;
 mod equivalent_damping;
+mod extinction;
 mod facts;
 mod forced;
 mod forms;
@@ -27,7 +28,7 @@ use crate::results::{IdentifiedRun, Overview, RejectedStretch};
 use crate::run::RunKind;
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&RunPage) -> Option<Markup>; 17] = [
+const PARTS: [fn(&RunPage) -> Option<Markup>; 18] = [
     law_gaps::part,
     facts::part,
     record::part,
@@ -35,6 +36,7 @@ const PARTS: [fn(&RunPage) -> Option<Markup>; 17] = [
     moment::part,
     scatter::part,
     equivalent_damping::part,
+    extinction::part,
     forms::part,
     coefficients::part,
     resimulation::part,

@@ -1,0 +1,80 @@
+//! The uncertainty budget of the damping, source by source.
+
+use maud::{Markup, html};
+
+use super::CampaignPage;
+use crate::report::document::{number_cell, section, table, text_cell};
+use crate::report::number::{UNKNOWN, fixed, significant};
+use crate::uncertainty::{self, Budget, EQUATIONS};
+
+pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
+    let all = uncertainty::budgets(page.campaign, page.results);
+    if all.is_empty() {
+        return None;
+    }
+    let columns = [
+        ("Condition", ""),
+        ("Fr", "–"),
+        ("n", ""),
+        ("b_{eq}(5°)", "1/s"),
+        ("Noise", "A"),
+        ("Digitiser", "B"),
+        ("Run to run", "A"),
+        ("Clock", "B"),
+        ("Roll gain", "B"),
+        ("u", "1/s"),
+        ("U b_{eq}", "%"),
+        ("U B̂₄₄", "%"),
+    ];
+    let caption = "Standard uncertainties of the mean b_{eq} of n decays at 5 deg in 1/s, type A \
+                   or B, u all of them together; U = k u as a share of the value, k for 95 % with \
+                   the effective degrees of freedom.";
+    let rows: Vec<Markup> = all.iter().map(row).collect();
+    let equations: Vec<Markup> = EQUATIONS
+        .iter()
+        .map(|(source, kind, equation)| {
+            html! { (text_cell(source)) (text_cell(kind)) (text_cell(equation)) }
+        })
+        .collect();
+    let mut left_out: Vec<&str> = all.iter().flat_map(|budget| budget.left_out.clone()).collect();
+    left_out.sort_unstable();
+    left_out.dedup();
+    Some(section(
+        "uncertainty",
+        "Uncertainty budget",
+        &html! {
+            (table("budget-table", caption, &columns, &rows))
+            @if !left_out.is_empty() {
+                p.note {
+                    "Not in the sums where a dash stands, for nothing is known of it: "
+                    (left_out.join(", ")) ". What no record tells is given in [uncertainty] of "
+                    "campaign.toml."
+                }
+            }
+            (table(
+                "budget-equations",
+                "Sources, after the GUM (JCGM 100:2008) and ITTC 7.5-02-01-01.",
+                &[("Source", ""), ("Type", ""), ("Standard uncertainty", "")],
+                &equations,
+            ))
+        },
+    ))
+}
+
+fn row(budget: &Budget) -> Markup {
+    let known = |u: Option<f64>| u.map_or_else(|| UNKNOWN.to_owned(), |u| significant(u, 2));
+    html! {
+        td { (budget.condition) }
+        (number_cell(&fixed(budget.froude, 3)))
+        (number_cell(&budget.n_runs.to_string()))
+        (number_cell(&significant(budget.damping_per_s, 4)))
+        (number_cell(&known(Some(budget.noise_per_s))))
+        (number_cell(&known(budget.digitiser_per_s)))
+        (number_cell(&known(budget.run_to_run_per_s)))
+        (number_cell(&known(budget.clock_per_s)))
+        (number_cell(&known(budget.roll_gain_per_s)))
+        (number_cell(&known(Some(budget.combined_per_s))))
+        (number_cell(&significant(100.0 * budget.expanded_share, 2)))
+        (number_cell(&significant(100.0 * budget.b44_expanded_share, 2)))
+    }
+}

@@ -1,0 +1,79 @@
+//! Decays of one condition at one speed: how much they differ from run to run.
+
+use serde::Serialize;
+
+use crate::inverse::estimate::Estimate;
+use crate::inverse::scattered::{combination, never_nil, nodes};
+use crate::results::{COMPARISON_DEG, IdentifiedRun, Results, by_speed};
+use crate::run::RunKind;
+
+/// The decays of one condition at one speed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Repeats {
+    /// Loading or appendage condition.
+    pub condition: String,
+    /// Mean Froude number [-].
+    pub froude: f64,
+    /// Roll amplitude of the damping [deg].
+    pub amplitude_deg: f64,
+    /// Ids of the runs.
+    pub runs: Vec<String>,
+    /// Mean of `b_eq` over the runs [1/s].
+    pub mean_per_s: f64,
+    /// Standard deviation from run to run [1/s], from two runs up.
+    pub run_to_run_per_s: Option<f64>,
+    /// Root mean square of the standard deviations that the runs give themselves [1/s].
+    pub own_per_s: f64,
+    /// `b_eq` of the condition with scatter and noise [1/s], from two runs up.
+    pub damping_per_s: Option<Estimate>,
+}
+
+/// Decays of each condition at each speed, in order.
+pub fn repeats(results: &Results) -> Vec<Repeats> {
+    let mut all = Vec::new();
+    for condition in results.conditions() {
+        for runs in by_speed(decays(results, condition)) {
+            all.extend(of(condition, &runs));
+        }
+    }
+    all
+}
+
+/// The decays of a condition that give their damping at the amplitude of comparison.
+pub(super) fn decays<'r>(results: &'r Results, condition: &str) -> Vec<&'r IdentifiedRun> {
+    let runs = results.runs.iter().filter(|run| run.condition == condition);
+    runs.filter(|run| run.run.kind == RunKind::Decay && damping(run).is_some()).collect()
+}
+
+/// `b_eq` of a run [1/s] at the amplitude of comparison, where it is a number.
+pub(super) fn damping(run: &IdentifiedRun) -> Option<Estimate> {
+    let damping = run.at_comparison()?.fitted_per_s;
+    (damping.mean.is_finite() && damping.sd.is_finite()).then_some(damping)
+}
+
+fn of(condition: &str, runs: &[&IdentifiedRun]) -> Option<Repeats> {
+    let values: Vec<(f64, f64)> =
+        runs.iter().filter_map(|run| damping(run)).map(|b| (b.mean, b.sd)).collect();
+    let n = values.len() as f64;
+    if values.is_empty() {
+        return None;
+    }
+    let mean_per_s = values.iter().map(|value| value.0).sum::<f64>() / n;
+    let squares: f64 = values.iter().map(|value| (value.0 - mean_per_s).powi(2)).sum();
+    let own = values.iter().map(|value| value.1.powi(2)).sum::<f64>() / n;
+    let repeated = values.len() > 1;
+    let damping_per_s = || {
+        let nodes = nodes(&vec![vec![1.0]; values.len()], &values);
+        combination(&never_nil(nodes, &values), &[1.0])
+    };
+    Some(Repeats {
+        condition: condition.to_owned(),
+        froude: runs.iter().map(|run| run.froude).sum::<f64>() / runs.len() as f64,
+        amplitude_deg: COMPARISON_DEG,
+        runs: runs.iter().map(|run| run.id.clone()).collect(),
+        mean_per_s,
+        run_to_run_per_s: repeated.then(|| (squares / (n - 1.0)).sqrt()),
+        own_per_s: own.sqrt(),
+        damping_per_s: repeated.then(damping_per_s),
+    })
+}
