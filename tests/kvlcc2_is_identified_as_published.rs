@@ -15,7 +15,7 @@ use rolltank::run::{Run, Series};
 const INERTIA_KG_M2: f64 = 135.6;
 
 /// Folder of the measured data; none where they are not at hand.
-fn folder() -> Option<PathBuf> {
+pub(crate) fn folder() -> Option<PathBuf> {
     let root = std::env::var_os("ROLLTANK_MEASURED").map_or_else(
         || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/measured"),
         PathBuf::from,

@@ -53,6 +53,7 @@ mod the_posterior_is_calibrated;
 mod the_report_is_complete_and_self_contained;
 mod the_report_is_printed;
 mod the_report_is_read_at_a_glance;
+mod the_results_are_exported;
 mod the_simulated_tank_keeps_its_script;
 mod the_simulated_tank_writes_campaigns;
 mod the_tables_and_the_catalogue_agree_with_the_results;

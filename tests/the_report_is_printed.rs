@@ -11,6 +11,7 @@ use serde_json::Value;
 
 use crate::campaign_folder::{CampaignFolder, rolltank};
 use crate::chromium;
+use crate::kvlcc2_is_identified_as_published;
 use crate::synthetic_results;
 use crate::the_report_is_complete_and_self_contained::assert_rounded;
 
@@ -135,6 +136,19 @@ fn the_command_prints_a_campaign() {
     let document = fs::read_to_string(report.join("identification.json")).unwrap();
     assert_runs_agree(&report.join("report.pdf"), &serde_json::from_str(&document).unwrap());
     assert_readable(&report.join("report.pdf"));
+}
+
+#[test]
+fn the_measured_decays_of_kvlcc2_are_readable_on_paper_with_the_numbers_of_the_contract() {
+    let Some(measured) = kvlcc2_is_identified_as_published::folder() else { return };
+    chromium::program();
+    let report = tempfile::tempdir().unwrap();
+    let (measured, dir) = (measured.display().to_string(), report.path().display().to_string());
+    let told = rolltank(report.path(), &["report", &measured, "-o", &dir, "--pdf"]);
+    assert_eq!(told.exit, 0, "{}", told.err);
+    let document = fs::read_to_string(report.path().join("identification.json")).unwrap();
+    assert_runs_agree(&report.path().join("report.pdf"), &serde_json::from_str(&document).unwrap());
+    assert_readable(&report.path().join("report.pdf"));
 }
 
 #[test]

@@ -8,11 +8,19 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 /// The packages, pinned: an upgrade is a change of ours, not of the day the tests run.
-const PACKAGES: [&str; 4] = ["mcap==1.6.0", "protobuf==6.33.6", "zstandard==0.25.0", "lz4==4.4.5"];
+const PACKAGES: [&str; 6] = [
+    "mcap==1.6.0",
+    "protobuf==6.33.6",
+    "zstandard==0.25.0",
+    "lz4==4.4.5",
+    "pandas==2.3.3",
+    "pyarrow==22.0.0",
+];
 /// Folder of the virtual environment; a change of the packages needs a new number.
-const HOME: &str = "python_mcap_1";
+const HOME: &str = "python_mcap_2";
 /// What an interpreter that has the packages can do.
-const IMPORT: [&str; 2] = ["-c", "import mcap.reader, zstandard, lz4.frame, google.protobuf"];
+const IMPORT: [&str; 2] =
+    ["-c", "import mcap.reader, zstandard, lz4.frame, google.protobuf, pandas, pyarrow"];
 
 /// The interpreter of a virtual environment that has the packages; none without Python or network,
 /// unless this is CI, where nothing may be passed over.
@@ -21,10 +29,10 @@ pub(crate) fn python() -> Option<&'static Path> {
     let python = PYTHON.get_or_init(|| match installed() {
         Ok(python) => Some(python),
         Err(error) if env::var_os("CI").is_none() => {
-            eprintln!("skipped: no Python with mcap and protobuf here: {error}");
+            eprintln!("skipped: no Python with its packages here: {error}");
             None
         }
-        Err(error) => panic!("no Python with mcap and protobuf: {error}"),
+        Err(error) => panic!("no Python with its packages: {error}"),
     });
     python.as_deref()
 }

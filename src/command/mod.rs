@@ -8,6 +8,7 @@ mod demo;
 mod devices;
 mod diagnose;
 mod exit;
+mod export;
 mod failure;
 mod fresh_folder;
 mod identify;
@@ -54,6 +55,7 @@ enum Command {
     Identify(identify::Arguments),
     Diagnose(diagnose::Arguments),
     Report(report::Arguments),
+    Export(export::Arguments),
     Simulate(simulate::Arguments),
     Import(import::Arguments),
     Reference(reference::Arguments),
@@ -102,6 +104,7 @@ pub fn run(line: &CommandLine, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Identify(arguments) => identify::run(arguments, out),
         Command::Diagnose(arguments) => diagnose::run(arguments, out),
         Command::Report(arguments) => report::run(arguments, out),
+        Command::Export(arguments) => export::run(arguments, out),
         Command::Simulate(arguments) => simulate::run(arguments, out),
         Command::Import(arguments) => import::run(arguments, out),
         Command::Reference(arguments) => reference::run(arguments, out),

@@ -28,12 +28,24 @@ pub(super) fn replay(
     speed: Option<f64>,
     into: Option<&Path>,
 ) -> Result<Replayed, Failure> {
-    let options = Options {
-        method: identifying.method(),
-        seed: identifying.seed(),
-        speed,
-        keep_histories: false,
-    };
+    let (method, seed) = (identifying.method(), identifying.seed());
+    replay_with(campaign, Options { method, seed, speed, keep_histories: false }, into)
+}
+
+/// Replays a campaign and keeps the histories of all its runs in memory.
+pub(super) fn with_histories(
+    campaign: &Campaign,
+    identifying: Identifying,
+) -> Result<Replayed, Failure> {
+    let (method, seed) = (identifying.method(), identifying.seed());
+    replay_with(campaign, Options { method, seed, ..Options::default() }, None)
+}
+
+fn replay_with(
+    campaign: &Campaign,
+    options: Options,
+    into: Option<&Path>,
+) -> Result<Replayed, Failure> {
     let terminal = Terminal::new();
     let mut n_lost = 0;
     let mut observed = Observed::default();

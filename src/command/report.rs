@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
 }
 
 /// Refuses a folder in which the tables of the report would be taken for recordings.
-fn require_apart(campaign: &Campaign, dir: &Path) -> Result<(), Failure> {
+pub(super) fn require_apart(campaign: &Campaign, dir: &Path) -> Result<(), Failure> {
     let results = pipeline::results_folder(campaign);
     let wanted = resolved(dir);
     if wanted.starts_with(resolved(&campaign.folder)) && !wanted.starts_with(resolved(&results)) {

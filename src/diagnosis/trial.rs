@@ -6,7 +6,7 @@ use super::run_fit::ChannelNoise;
 use super::score::Scored;
 use super::settle::{Settled, settle};
 use super::survey::{Extension, Fit, Survey};
-use crate::model::effects;
+use crate::model::{Acts, effects};
 
 /// A candidate fitted in full.
 pub(super) struct Tried {
@@ -65,21 +65,35 @@ pub(super) fn with(
     }
 }
 
+/// Share of its range within which a shape is held at an edge, and would rather be outside.
+const EDGE: f64 = 1e-3;
+
 /// Whether the newest effect lies inside its physical range.
 pub(super) fn is_newest_plausible(survey: &Survey, settled: &Settled) -> bool {
     settled.fit.extensions.len().checked_sub(1).is_none_or(|e| is_plausible(survey, settled, e))
 }
 
-/// Whether an effect lies inside its physical range, as far as its deviation allows.
+/// Whether an effect lies inside its physical range: its strengths as far as their deviations
+/// allow, the shapes of a memory off the edges at which they are held. Others may lie at an edge:
+/// friction is as sharp as can be.
 pub(super) fn is_plausible(survey: &Survey, settled: &Settled, e: usize) -> bool {
     let extension = &settled.fit.extensions[e];
     let layout = Layout::new(survey, &settled.fit);
+    let n_strengths = extension.effect.strengths.len();
     extension.slots.iter().enumerate().all(|(s, values)| {
-        (0..extension.effect.strengths.len()).all(|k| {
+        let remembers = matches!(extension.effect.acts, Acts::Lagging(_));
+        let is_held = remembers
+            && values[n_strengths..].iter().enumerate().any(|(k, value)| {
+                let [low, high] = extension.effect.shapes[k].range;
+                let edge = EDGE * (high - low);
+                *value < low + edge || *value > high - edge
+            });
+        let is_strong = (0..n_strengths).all(|k| {
             let [low, high] = extension.effect.strengths[k].range;
             let column = layout.parameter(&settled.fit, e, s, k);
             let sd = settled.solution.covariance[column][column].max(0.0).sqrt();
             values[k] > low - 2.0 * sd && values[k] < high + 2.0 * sd
-        })
+        });
+        is_strong && !is_held
     })
 }

@@ -110,7 +110,7 @@ pub struct Diagnosis {
 }
 
 /// Share of what the base model leaves beyond which causes are no whole story.
-const MOST_LEFT: f64 = 0.2;
+const MOST_LEFT: f64 = 0.1;
 
 /// Diagnoses the runs of a campaign; none without runs.
 pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {

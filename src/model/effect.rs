@@ -69,7 +69,8 @@ pub struct Circumstances {
     pub speed_m_s: f64,
     /// Natural frequency [rad/s] as identified: for scales, never for an equation.
     pub natural_rad_s: f64,
-    /// Linear damping [1/s] as identified, for scales too, at least a hundredth of a per cent of critical.
+    /// Linear damping [1/s] as identified, for scales too, at least a hundredth of a per cent of
+    /// critical.
     pub b1_per_s: f64,
     /// Total inertia `K/w^2` [kg m2].
     pub inertia_kg_m2: f64,

@@ -63,7 +63,7 @@ fn told_by(path: &Path, recording: &str, appendix: &mut Appendix) {
                     recording: recording.to_owned(),
                     device: taken.device,
                     channel: taken.channel,
-                    definition: taken.definition.split_whitespace().collect::<Vec<_>>().join(" "),
+                    definition: definition(&taken.definition),
                     by: taken.by,
                     taken: taken.taken,
                 };
@@ -74,4 +74,12 @@ fn told_by(path: &Path, recording: &str, appendix: &mut Appendix) {
             _ => {}
         }
     }
+}
+
+/// Zero and curve on one line, without what the record says beside them.
+fn definition(table: &str) -> String {
+    let beside =
+        |line: &&str| !["by = ", "at = ", "note = \"\""].iter().any(|k| line.starts_with(k));
+    let words = table.lines().filter(beside).flat_map(str::split_whitespace);
+    words.collect::<Vec<_>>().join(" ")
 }

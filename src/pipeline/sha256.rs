@@ -98,7 +98,8 @@ pub(super) fn sha256(mut source: impl Read) -> io::Result<String> {
         }
         bytes.chunks_exact(64).for_each(|block| compress(&mut state, block));
         if is_last {
-            return Ok(state.iter().map(|word| format!("{word:08x}")).collect());
+            let words = state.map(|word| format!("{word:08x}"));
+            return Ok(words.concat());
         }
     }
 }

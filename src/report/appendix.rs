@@ -174,7 +174,7 @@ fn files(appendix: &Appendix) -> Markup {
         })
         .collect();
     let columns = [("File", ""), ("Size", "bytes"), ("SHA-256", "")];
-    let caption = "Files of the recordings with their check sums, as `sha256sum` prints them.";
+    let caption = "Files of the recordings with their check sums, as sha256sum prints them.";
     told(
         "files",
         "Recordings",

@@ -3,7 +3,6 @@
 mod appendix;
 mod book;
 mod campaign_page;
-mod csv_tables;
 mod damping_table;
 mod diagnosis_json;
 mod diagnosis_page;
@@ -20,17 +19,18 @@ mod notation;
 mod number;
 mod remark;
 mod run_page;
+mod tables;
 mod whole_file;
 
 use std::path::{Path, PathBuf};
 
 pub use appendix::{Appendix, AttachedInstrument, ChannelCalibration, RecordedFile};
 pub use book::book;
-pub use csv_tables::csv_tables;
 pub use damping_table::damping_table;
 pub use diagnosis_json::{DIAGNOSIS_SCHEMA, diagnosis_json};
 pub use diagnosis_text::diagnosis_text;
 pub use json::{IDENTIFICATION_NAME, IDENTIFICATION_SCHEMA, identification_json};
+pub use tables::{TableFormat, csv_tables, export_tables};
 
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;

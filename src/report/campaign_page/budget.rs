@@ -46,7 +46,8 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
             (table("budget-table", caption, &columns, &rows))
             @if !left_out.is_empty() {
                 p.note {
-                    "Not in the sums where a dash stands, for nothing is known of it: "
+                    "Where a dash stands nothing is known of the source, it is not in the sum, and "
+                    "without the scatter from run to run the sum is a lower bound (≥): "
                     (left_out.join(", ")) ". What no record tells is given in [uncertainty] of "
                     "campaign.toml."
                 }
@@ -63,6 +64,9 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
 
 fn row(budget: &Budget) -> Markup {
     let known = |u: Option<f64>| u.map_or_else(|| UNKNOWN.to_owned(), |u| significant(u, 2));
+    // A scatter that nobody has seen is the largest source in most tanks.
+    let bound = if budget.run_to_run_per_s.is_none() { "≥ " } else { "" };
+    let expanded = |share: f64| format!("{bound}{}", significant(100.0 * share, 2));
     html! {
         td { (budget.condition) }
         (number_cell(&fixed(budget.froude, 3)))
@@ -74,7 +78,7 @@ fn row(budget: &Budget) -> Markup {
         (number_cell(&known(budget.clock_per_s)))
         (number_cell(&known(budget.roll_gain_per_s)))
         (number_cell(&known(Some(budget.combined_per_s))))
-        (number_cell(&significant(100.0 * budget.expanded_share, 2)))
-        (number_cell(&significant(100.0 * budget.b44_expanded_share, 2)))
+        (number_cell(&expanded(budget.expanded_share)))
+        (number_cell(&expanded(budget.b44_expanded_share)))
     }
 }

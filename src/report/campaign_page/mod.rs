@@ -1,5 +1,6 @@
 //! The page of the campaign: its parts in reading order.
 
+mod against_amplitude;
 mod alike;
 mod at_speeds;
 mod budget;
@@ -8,6 +9,7 @@ mod conditions;
 mod damping_against_froude;
 mod diagnosis;
 mod equivalent_damping;
+mod extinction;
 mod forced_damping;
 mod forced_runs;
 mod froude_law;
@@ -33,13 +35,15 @@ use crate::inverse::identification::ForcedResponse;
 use crate::results::{IdentifiedRun, Results};
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&CampaignPage) -> Option<Markup>; 21] = [
+const PARTS: [fn(&CampaignPage) -> Option<Markup>; 23] = [
     at_speeds::part,
     diagnosis::part,
     law_gaps::part,
     damping_against_froude::part,
     froude_law::part,
     equivalent_damping::part,
+    against_amplitude::part,
+    extinction::part,
     compared::part,
     repeats::part,
     budget::part,

@@ -69,7 +69,6 @@ fn law(page: &RunPage) -> Vec<Row> {
             "1/rad²",
             fit.b3_s.scaled(3.0 * PI / 8.0 * w),
         ),
-        ("p", "extinction, full cycle (p–q): 2a", "–", a_half.scaled(2.0)),
     ]
 }
 

@@ -1,50 +1,19 @@
-//! The results as CSV tables, one unit per column.
+//! What stands in the tables: runs, equivalent damping, rejections, laws.
 
-use std::path::{Path, PathBuf};
-
-use super::field_units::FieldUnits;
-use super::{ReportError, whole_file};
+use super::{Cell, Table};
 use crate::campaign::Campaign;
 use crate::inverse::estimate::Estimate;
+use crate::report::field_units::FieldUnits;
 use crate::results::Results;
 
-/// One table: its file, its headers, its rows.
-struct Table {
-    name: &'static str,
-    headers: Vec<String>,
-    rows: Vec<Vec<String>>,
-}
-
-/// Writes the results as CSV tables to `dir`; returns the paths.
-///
-/// Numbers have as many digits as they need to be read back exactly; what is not known is empty.
-pub fn csv_tables(
-    campaign: &Campaign,
-    results: &Results,
-    dir: &Path,
-) -> Result<Vec<PathBuf>, ReportError> {
-    [
+/// Every table but the moment histories.
+pub(super) fn all(campaign: &Campaign, results: &Results) -> Vec<Table> {
+    vec![
         runs(campaign, results),
         equivalent_damping(campaign, results),
         rejected(results),
         froude_law(results),
     ]
-    .into_iter()
-    .map(|table| {
-        let name = table.name;
-        let bytes = bytes(&table).map_err(|source| ReportError::Table { name, source })?;
-        whole_file::write(dir, name, &bytes)
-    })
-    .collect()
-}
-
-fn bytes(table: &Table) -> Result<Vec<u8>, csv::Error> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(&table.headers)?;
-    for row in &table.rows {
-        writer.write_record(row)?;
-    }
-    writer.into_inner().map_err(|unwritten| unwritten.into_error().into())
 }
 
 fn runs(campaign: &Campaign, results: &Results) -> Table {
@@ -77,12 +46,12 @@ fn runs(campaign: &Campaign, results: &Results) -> Table {
         let units = FieldUnits::new(campaign, run);
         let forced = identification.forced.as_ref();
         let mut row = vec![
-            run.id.clone(),
-            run.recording.clone(),
-            run.run.kind.name().to_owned(),
-            run.condition.clone(),
+            text(&run.id),
+            text(&run.recording),
+            text(run.run.kind.name()),
+            text(&run.condition),
         ];
-        row.extend([run.run.start_s, run.run.end_s, run.froude, run.speed_m_s].map(number));
+        row.extend([run.run.start_s, run.run.end_s, run.froude, run.speed_m_s].map(Cell::Number));
         for estimate in [
             Some(identification.natural_frequency_rad_s),
             Some(identification.damping.b1_per_s),
@@ -96,11 +65,11 @@ fn runs(campaign: &Campaign, results: &Results) -> Table {
         ] {
             row.extend(estimate_cells(estimate));
         }
-        row.push(number(identification.damping.correlation));
-        row.push(number(identification.resimulation.rmse_rad.to_degrees()));
+        row.push(Cell::Number(identification.damping.correlation));
+        row.push(Cell::Number(identification.resimulation.rmse_rad.to_degrees()));
         row
     });
-    Table { name: "runs.csv", headers, rows: rows.collect() }
+    Table { name: "runs", headers, rows: rows.collect() }
 }
 
 fn equivalent_damping(campaign: &Campaign, results: &Results) -> Table {
@@ -120,9 +89,9 @@ fn equivalent_damping(campaign: &Campaign, results: &Results) -> Table {
         let units = FieldUnits::new(campaign, run);
         for at in &run.identification.equivalent_damping {
             let b = at.fitted_per_s;
-            let mut row = vec![run.id.clone(), run.condition.clone()];
-            row.extend([run.froude, at.amplitude_deg].map(number));
-            row.push(at.extrapolated.to_string());
+            let mut row = vec![text(&run.id), text(&run.condition)];
+            row.extend([run.froude, at.amplitude_deg].map(Cell::Number));
+            row.push(Cell::Flag(at.extrapolated));
             for estimate in [
                 Some(b),
                 at.local_per_s,
@@ -136,20 +105,20 @@ fn equivalent_damping(campaign: &Campaign, results: &Results) -> Table {
             rows.push(row);
         }
     }
-    Table { name: "equivalent_damping.csv", headers, rows }
+    Table { name: "equivalent_damping", headers, rows }
 }
 
 fn rejected(results: &Results) -> Table {
     let rows = results.rejected.iter().map(|stretch| {
         vec![
-            stretch.recording.clone(),
-            number(stretch.start_s),
-            number(stretch.end_s),
-            stretch.reason.clone(),
+            text(&stretch.recording),
+            Cell::Number(stretch.start_s),
+            Cell::Number(stretch.end_s),
+            text(&stretch.reason),
         ]
     });
     let headers = words(&["recording", "start [s]", "end [s]", "reason"]);
-    Table { name: "rejected.csv", headers, rows: rows.collect() }
+    Table { name: "rejected", headers, rows: rows.collect() }
 }
 
 fn froude_law(results: &Results) -> Table {
@@ -158,13 +127,13 @@ fn froude_law(results: &Results) -> Table {
         headers.extend(estimate_headers(name, unit));
     }
     let rows = results.froude_laws.iter().map(|law| {
-        let mut row = vec![law.condition.clone()];
+        let mut row = vec![text(&law.condition)];
         for estimate in [law.b0_per_s, law.kappa, law.b3_s, law.scatter_per_s] {
             row.extend(estimate_cells(Some(estimate)));
         }
         row
     });
-    Table { name: "froude_law.csv", headers, rows: rows.collect() }
+    Table { name: "froude_law", headers, rows: rows.collect() }
 }
 
 fn words(names: &[&str]) -> Vec<String> {
@@ -175,12 +144,12 @@ fn estimate_headers(name: &str, unit: &str) -> [String; 4] {
     ["mean", "sd", "lo95", "hi95"].map(|part| format!("{name} {part} [{unit}]"))
 }
 
-fn estimate_cells(estimate: Option<Estimate>) -> [String; 4] {
-    estimate.map_or_else(Default::default, |estimate| {
-        [estimate.mean, estimate.sd, estimate.lo95, estimate.hi95].map(number)
-    })
+fn estimate_cells(estimate: Option<Estimate>) -> [Cell; 4] {
+    let unknown = Estimate { mean: f64::NAN, sd: f64::NAN, lo95: f64::NAN, hi95: f64::NAN };
+    let Estimate { mean, sd, lo95, hi95 } = estimate.unwrap_or(unknown);
+    [mean, sd, lo95, hi95].map(Cell::Number)
 }
 
-fn number(value: f64) -> String {
-    if value.is_finite() { value.to_string() } else { String::new() }
+fn text(text: &str) -> Cell {
+    Cell::Text(text.to_owned())
 }
