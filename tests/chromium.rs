@@ -3,7 +3,7 @@
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::LazyLock;
+use std::sync::{LazyLock, Mutex, PoisonError};
 
 /// Names under which Chromium and Chrome are installed.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
@@ -42,6 +42,9 @@ pub(crate) fn debian_program(name: &str, package: &str) -> PathBuf {
 }
 
 fn install(package: &str) {
+    // Two stories may miss two packages at once, and apt-get bears no other beside it.
+    static TURN: Mutex<()> = Mutex::new(());
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     assert!(is_root(), "{package} is missing: install it with `apt-get install {package}`");
     for arguments in [&["update"][..], &["install", "-y", "--no-install-recommends", package]] {
         let status = Command::new("apt-get")

@@ -49,14 +49,13 @@ fn ask(address: &str, what: &str, headers: &Headers, body: &str) -> Answer {
 /// Sends a request and leaves the answer to be read, or not.
 pub(crate) fn begin(address: &str, what: &str, headers: &Headers, body: &str) -> TcpStream {
     let mut stream = TcpStream::connect(address).expect("the daemon listens");
-    let host = headers.iter().find(|(name, _)| *name == "Host").map_or(address, |(_, host)| host);
-    let mut text = format!("{what} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n");
-    for (name, value) in headers.iter().filter(|(name, _)| *name != "Host") {
-        text += &format!("{name}: {value}\r\n");
-    }
-    if !body.is_empty() {
-        text += &format!("Content-Length: {}\r\n", body.len());
-    }
-    write!(stream, "{text}\r\n{body}").expect("it takes a request");
+    let host = headers.iter().find(|(name, _)| *name == "Host").map_or(&address, |(_, host)| host);
+    let length = body.len().to_string();
+    let more = [("Host", *host), ("Connection", "close"), ("Content-Length", &length)];
+    let others = headers.iter().copied().filter(|(name, _)| *name != "Host");
+    let lines: Vec<String> =
+        more.into_iter().chain(others).map(|(name, value)| format!("{name}: {value}")).collect();
+    write!(stream, "{what} HTTP/1.1\r\n{}\r\n\r\n{body}", lines.join("\r\n"))
+        .expect("it takes a request");
     stream
 }

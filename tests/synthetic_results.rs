@@ -1,7 +1,6 @@
 //! Results of a campaign as identification would leave them, made from known coefficients.
 
 use std::f64::consts::PI;
-use std::path::PathBuf;
 
 use crate::synthetic_roll::{STEP_S, Truth};
 use rand::{RngExt, SeedableRng};
@@ -40,7 +39,7 @@ pub(crate) fn campaign(name: &str) -> Campaign {
         })
     });
     Campaign {
-        folder: PathBuf::from("campaign"),
+        folder: std::path::PathBuf::from("campaign"),
         name: name.to_owned(),
         hull: Hull {
             length_pp_m: 2.5,

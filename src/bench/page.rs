@@ -74,7 +74,7 @@ fn with_pages(address: SocketAddr, n_pages: usize) -> io::Result<Vec<Figure>> {
     thread::sleep(Duration::from_secs(1));
     let (bytes, busy) = (n_bytes.load(Ordering::Relaxed), busy());
     thread::sleep(OVER);
-    let spent = busy_since(busy).as_secs_f64() / OVER.as_secs_f64();
+    let spent = busy_since(&busy).as_secs_f64() / OVER.as_secs_f64();
     let more = n_bytes.load(Ordering::Relaxed) - bytes;
     ended.store(true, Ordering::Release);
     for reader in readers {
@@ -99,7 +99,7 @@ fn with_pages(address: SocketAddr, n_pages: usize) -> io::Result<Vec<Figure>> {
 
 /// Reads as a browser would, and counts.
 fn read(stream: &mut TcpStream, n_bytes: &AtomicU64, ended: &AtomicBool) {
-    let mut buffer = [0; 65_536];
+    let mut buffer = [0; 16_384];
     while !ended.load(Ordering::Acquire) {
         match stream.read(&mut buffer) {
             Ok(n) if n > 0 => n_bytes.fetch_add(n as u64, Ordering::Relaxed),
@@ -165,7 +165,7 @@ fn busy() -> Vec<(String, u64)> {
     threads.filter_map(|entry| time(entry.path())).collect()
 }
 
-fn busy_since(before: Vec<(String, u64)>) -> Duration {
+fn busy_since(before: &[(String, u64)]) -> Duration {
     let earlier =
         |thread: &str| before.iter().find(|(known, _)| known == thread).map_or(0, |t| t.1);
     let spent_ns = busy().iter().map(|(thread, ns)| ns.saturating_sub(earlier(thread))).sum();

@@ -72,7 +72,9 @@ fn whole(source: &Source<'_>, root: &Section<'_>, folder: &Path) -> Option<Campa
     check_exciter(root, &known);
     let model = model(source, folder);
     let judgements = judged::read(folder).unwrap_or_else(|mistakes| {
-        mistakes.into_iter().for_each(|mistake| root.add(mistake));
+        for mistake in mistakes {
+            root.add(mistake);
+        }
         Judgements::default()
     });
     Some(Campaign {

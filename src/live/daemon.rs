@@ -14,6 +14,7 @@ use tokio::sync::mpsc;
 use super::diagnosing::Diagnoser;
 use super::error::LiveError;
 use super::keeping::recover;
+use super::reporting::write;
 use super::session::{self, Lent, Plan};
 use super::supervisor::Supervisor;
 use super::under_way::Ended;
@@ -88,7 +89,8 @@ pub fn run(
         match left.ended {
             Ended::Terminated => {
                 converting.finish()?;
-                return Ok(earlier.map(|found| pipeline::judged(found, &board.judgements())));
+                campaign.recordings = left.recordings;
+                return Ok(earlier.map(|found| last_told(&campaign, found, &diagnoser, board)));
             }
             Ended::Broken => {
                 converting.finish()?;
@@ -113,6 +115,14 @@ pub fn run(
             }
         }
     }
+}
+
+/// The results as people have judged them, written with the diagnosis of every run.
+fn last_told(campaign: &Campaign, found: Results, diagnoser: &Diagnoser, board: &Board) -> Results {
+    let results = pipeline::judged(found, &board.judgements());
+    let diagnosis = diagnoser.last(campaign);
+    write(campaign, &results, diagnosis.as_deref(), &pipeline::results_folder(campaign));
+    results
 }
 
 /// Conversions of finished recordings, on threads of their own.

@@ -27,6 +27,7 @@ mod tally;
 mod telling;
 mod under_way;
 mod virtual_day;
+mod virtual_plan;
 mod virtual_tank;
 
 pub use daemon::{DaemonOptions, run};

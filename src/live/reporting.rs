@@ -98,7 +98,8 @@ impl Reporter<'_> {
         }
         self.events.blocking_send(Event::AllReported).ok();
         let earlier = known.or_else(|| self.earlier.recv().ok().flatten())?;
-        let diagnosis = self.diagnoser.last(self.campaign);
+        // The next recording does not wait for a diagnosis; only the daemon's end does.
+        let diagnosis = self.diagnoser.newest();
         let results = self.shown(Some(&earlier), diagnosis.as_ref());
         write(self.campaign, &results, diagnosis.as_deref(), &dir);
         Some(self.results.results(&earlier))
@@ -112,7 +113,13 @@ impl Reporter<'_> {
     }
 }
 
-fn write(campaign: &Campaign, results: &Results, diagnosis: Option<&Diagnosis>, dir: &Path) {
+/// Writes the results of a campaign; what goes wrong is told and ends nothing else.
+pub(super) fn write(
+    campaign: &Campaign,
+    results: &Results,
+    diagnosis: Option<&Diagnosis>,
+    dir: &Path,
+) {
     if let Err(error) = pipeline::write_results(campaign, results, diagnosis, dir) {
         tracing::error!("results not written: {error}");
     }

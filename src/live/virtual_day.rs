@@ -10,6 +10,7 @@ use devices::clock::{Clock, WallClock};
 
 use super::daemon::{DaemonOptions, run};
 use super::error::LiveError;
+use super::virtual_plan::plan;
 use super::virtual_tank::VirtualTank;
 use crate::campaign::{self, FILE_NAME};
 use crate::page::{Board, Listen, Order, Orders, Status, orders};
@@ -123,8 +124,8 @@ fn write_campaign(scenario: &Scenario, folder: &Path, condition: &str) -> Result
     fs::create_dir_all(&ports).map_err(failed)?;
     let ports = ports.canonicalize().map_err(failed)?;
     let instruments = INSTRUMENTS.replace("PORTS", &ports.display().to_string());
-    let text =
-        format!("{}\n[live]\ncondition = \"{condition}\"\n{instruments}", campaign_head(&live));
+    let (head, plan) = (campaign_head(&live), plan(&live));
+    let text = format!("{head}{plan}\n[live]\ncondition = \"{condition}\"\n{instruments}");
     let path = folder.join(FILE_NAME);
     fs::write(&path, text).map_err(|source| LiveError::File { path, source })
 }

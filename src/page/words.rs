@@ -35,6 +35,8 @@ pub(super) fn doing(status: &Status) -> String {
     let Some((level_deg, to_go)) = known else {
         return format!("at rest for {since_s:.0} s: roll {swing_deg:.2} deg, {run}");
     };
+    // The level is that of a whole window, which may have begun before the model was caught.
+    let level_deg = level_deg.min(swing_deg);
     match to_go {
         ToGo::Calm => format!("calm, ready for a run: roll {level_deg:.2} deg, {run}"),
         ToGo::Seconds { median_s, lo95_s, hi95_s } => format!(

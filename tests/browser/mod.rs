@@ -1,40 +1,28 @@
 //! A real browser for stories about the page: Chromium, driven by the scripts beside this file.
 
-use std::env;
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::OnceLock;
 
-/// Where a package manager puts Chromium.
-const CHROMIUM: [&str; 3] =
-    ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
-/// What to do where something is missing and cannot be installed from here.
-const HINT: &str = "the stories of the page need Chromium and node 20 with npm: \
-    apt-get install chromium nodejs npm";
+use super::chromium;
 
-/// What every story shares: the browser, and the folder with the packages that drive it.
+/// What every story shares: the programs, and the folder with the packages that drive the browser.
 struct Stage {
-    chromium: PathBuf,
+    chromium: &'static Path,
+    node: PathBuf,
     packages: PathBuf,
 }
 
 /// Set up once, however many stories want it at once.
 fn stage() -> &'static Stage {
     static STAGE: OnceLock<Stage> = OnceLock::new();
-    STAGE.get_or_init(|| Stage { chromium: chromium(), packages: packages() })
-}
-
-fn chromium() -> PathBuf {
-    let known = || CHROMIUM.iter().map(PathBuf::from).find(|path| path.exists());
-    if let Some(chromium) = known() {
-        return chromium;
-    }
-    for arguments in [&["update"][..], &["install", "-y", "--no-install-recommends", "chromium"]] {
-        run(Command::new("apt-get").args(arguments).env("DEBIAN_FRONTEND", "noninteractive"));
-    }
-    known().unwrap_or_else(|| panic!("no Chromium after its installation; {HINT}"))
+    STAGE.get_or_init(|| Stage {
+        chromium: chromium::program(),
+        node: chromium::debian_program("node", "nodejs"),
+        packages: packages(),
+    })
 }
 
 /// The packages of `package-lock.json`, below `target/`.
@@ -44,17 +32,24 @@ fn packages() -> PathBuf {
     // Another run of the tests may be installing them.
     let lock = File::create(home.join("lock")).expect("a lock file");
     lock.lock().expect("the lock");
-    let files = ["package.json", "package-lock.json"].map(|name| (beside(name), home.join(name)));
-    let same = |(from, to): &(PathBuf, PathBuf)| {
-        fs::read(to).is_ok_and(|installed| installed == fs::read(from).expect("a file of ours"))
-    };
-    if files.iter().all(same) && home.join("node_modules/playwright-core").exists() {
+    let (installed, wanted) = (home.join("installed"), fs::read(beside("package-lock.json")));
+    let wanted = wanted.expect("a file of ours");
+    if fs::read(&installed).is_ok_and(|installed| installed == wanted) {
         return home;
     }
-    for (from, to) in files.iter().rev() {
-        fs::copy(from, to).expect("the disk has room");
+    for name in ["package.json", "package-lock.json"] {
+        fs::copy(beside(name), home.join(name)).expect("the disk has room");
     }
-    run(Command::new("npm").args(["ci", "--no-audit", "--no-fund"]).current_dir(&home));
+    let npm = chromium::debian_program("npm", "npm");
+    let output = Command::new(npm)
+        .args(["ci", "--no-audit", "--no-fund"])
+        .current_dir(&home)
+        .output()
+        .expect("npm runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "npm ci in {}: {said}", home.display());
+    // Told last, so that half of an installation is none.
+    fs::write(installed, wanted).expect("the disk has room");
     home
 }
 
@@ -62,17 +57,10 @@ fn beside(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/browser").join(name)
 }
 
-/// Runs a program to its good end.
-fn run(command: &mut Command) {
-    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}; {HINT}"));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{command:?}: {said}\n{HINT}");
-}
-
 /// Plays a story of the browser; what it asks of the tank is done by `tank`, whose answer it gets.
 pub(crate) fn play(story: &str, arguments: &[&str], mut tank: impl FnMut(&str) -> String) {
-    let Stage { chromium, packages } = stage();
-    let node = Command::new("node")
+    let Stage { chromium, node, packages } = stage();
+    let driver = Command::new(node)
         .arg(beside(&format!("{story}.mjs")))
         .args(arguments)
         .current_dir(packages)
@@ -81,7 +69,7 @@ pub(crate) fn play(story: &str, arguments: &[&str], mut tank: impl FnMut(&str) -
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn();
-    let mut node = Ended(node.unwrap_or_else(|error| panic!("node: {error}; {HINT}")));
+    let mut node = Ended(driver.expect("node runs"));
     let mut asks = node.0.stdin.take().expect("it is piped");
     let mut stderr = node.0.stderr.take().expect("it is piped");
     let complaints = std::thread::spawn(move || {

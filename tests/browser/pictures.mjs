@@ -36,6 +36,7 @@ for (const colorScheme of ["light", "dark"]) {
   await page.click("#act-yes");
   await page.waitForSelector("#alarms .alarm");
   await page.waitForTimeout(500);
+  await page.evaluate(() => window.scrollTo(0, 0));
   await picture("alarm");
   await page.click("#told button[data-act=undo]");
   await page.click("#act-yes");

@@ -13,7 +13,7 @@ export function showState(state) {
   document.title = state.alarms.length > 0 ? `ALARM – ${state.campaign}` : state.campaign;
   const recording = byId("recording");
   const stopped = state.paused_by !== null;
-  say(recording, stopped ? "not recorded" : `recording ${state.recording}`);
+  say(recording, stopped ? "not recorded" : `recording ${state.recording.split("/").at(-1)}`);
   recording.dataset.state = stopped ? "bad" : "good";
   say(byId("record"), stopped ? "Start recording" : "Stop recording");
   say(byId("doing"), state.doing);

@@ -217,8 +217,9 @@ export class Strips {
     const perS = (this.frames.length - 1) / spanS;
     Object.assign(figures.dataset, { median: median.toFixed(2), worst: worst.toFixed(2),
       perS: perS.toFixed(1) });
-    const kilobytes = (Number(figures.dataset.bytesPerS ?? 0) / 1000).toFixed(1);
+    const bytesPerS = figures.dataset.bytesPerS;
+    const flow = bytesPerS ? `, ${(bytesPerS / 1000).toFixed(1)} kB/s` : "";
     figures.textContent = `This page: ${perS.toFixed(0)} frames a second, ` +
-      `${median.toFixed(1)} ms each to draw (99 %: ${worst.toFixed(1)} ms), ${kilobytes} kB/s.`;
+      `${median.toFixed(1)} ms each to draw (99 %: ${worst.toFixed(1)} ms)${flow}.`;
   }
 }

@@ -40,7 +40,8 @@ impl Token {
     /// A token may hold what a cookie may not.
     fn cookie_value(&self) -> Option<String> {
         let token = self.token.as_deref()?;
-        Some(token.bytes().map(|byte| format!("{byte:02x}")).collect())
+        let digit = |nibble: u8| char::from_digit(u32::from(nibble), 16).unwrap_or_default();
+        Some(token.bytes().flat_map(|byte| [digit(byte >> 4), digit(byte & 15)]).collect())
     }
 
     fn is_carried_by(&self, headers: &HeaderMap) -> bool {

@@ -16,8 +16,11 @@ use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
 use crate::results::Results;
 
+/// A part, from what was learnt.
+type Part = fn(&CampaignPage) -> Markup;
+
 /// Every part by the name of its place on the page.
-const PARTS: [(&str, fn(&CampaignPage) -> Markup); 8] = [
+const PARTS: [(&str, Part); 8] = [
     ("latest", latest::part),
     ("verdict", verdict::part),
     ("last-run", last_run::part),
