@@ -1,32 +1,22 @@
 //! The browser that stories look through, installed when it is missing.
 
 use std::os::unix::fs::MetadataExt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
-use std::sync::LazyLock;
+use std::sync::{Mutex, PoisonError};
 
 /// Names under which Chromium and Chrome are installed.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+
+/// One story installs while all others wait: `apt-get` bears no company.
+static INSTALLING: Mutex<()> = Mutex::new(());
 
 /// The program; `apt-get` installs it first where it is missing and we may.
 ///
 /// # Panics
 /// Where there is no browser and none can be installed: these stories are never skipped.
-pub(crate) fn program() -> &'static Path {
-    static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| {
-        installed().unwrap_or_else(|| {
-            install("chromium");
-            installed().expect("apt-get has installed chromium")
-        })
-    });
-    &PROGRAM
-}
-
-fn installed() -> Option<PathBuf> {
-    let named = std::env::var_os("ROLLTANK_CHROMIUM").map(PathBuf::from);
-    let folders = std::env::var_os("PATH").unwrap_or_default();
-    let below = |folder: PathBuf| NAMES.map(|name| folder.join(name));
-    named.into_iter().chain(std::env::split_paths(&folders).flat_map(below)).find(|p| p.is_file())
+pub(crate) fn program() -> PathBuf {
+    found_or_installed(installed, "chromium")
 }
 
 /// A program of Debian, installed from its package where it is missing.
@@ -35,10 +25,22 @@ pub(crate) fn debian_program(name: &str, package: &str) -> PathBuf {
         let folders = std::env::var_os("PATH").unwrap_or_default();
         std::env::split_paths(&folders).map(|folder| folder.join(name)).find(|path| path.is_file())
     };
+    found_or_installed(found, package)
+}
+
+fn found_or_installed(found: impl Fn() -> Option<PathBuf>, package: &str) -> PathBuf {
+    let _alone = INSTALLING.lock().unwrap_or_else(PoisonError::into_inner);
     found().unwrap_or_else(|| {
         install(package);
         found().expect("apt-get has installed it")
     })
+}
+
+fn installed() -> Option<PathBuf> {
+    let named = std::env::var_os("ROLLTANK_CHROMIUM").map(PathBuf::from);
+    let folders = std::env::var_os("PATH").unwrap_or_default();
+    let below = |folder: PathBuf| NAMES.map(|name| folder.join(name));
+    named.into_iter().chain(std::env::split_paths(&folders).flat_map(below)).find(|p| p.is_file())
 }
 
 fn install(package: &str) {
