@@ -6,6 +6,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Gate {
     /// Name in the JSON contract.
+    #[serde(rename = "gate")]
     pub id: &'static str,
     /// What is asked, as the heading of a row.
     pub asks: &'static str,

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::document::number_cell;
 use super::notation;
-use super::number::{UNKNOWN, significant};
+use super::number::{UNKNOWN, fixed, significant};
 use crate::procedure::Answer;
 
 /// Whether a gate is met, as a word with a mark that needs no colour.
@@ -27,8 +27,8 @@ pub(super) fn cells(answer: &Answer) -> Markup {
         unit => unit,
     };
     let number = |value: Option<f64>| match value {
-        // A count, whole or half.
-        Some(value) if unit.is_empty() => value.to_string(),
+        // A count, whole where it is one.
+        Some(value) if unit.is_empty() => fixed(value, 1).trim_end_matches(".0").to_owned(),
         Some(value) => format!("{} {unit}", significant(value, 3)),
         None => UNKNOWN.to_owned(),
     };

@@ -19,6 +19,5 @@ pub(super) fn answer(run: &IdentifiedRun) -> Option<Answer> {
     };
     let duration_s = run.run.end_s - run.run.start_s;
     let n = duration_s * frequency_rad_s / std::f64::consts::TAU;
-    let whole = n.floor();
-    Some(Answer::at_least(GATE, whole, N_PERIODS, format!("{n:.1} periods in {duration_s:.1} s")))
+    Some(Answer::at_least(GATE, n, N_PERIODS, format!("{n:.1} periods in {duration_s:.1} s")))
 }
