@@ -21,7 +21,7 @@ use super::under_way::Ended;
 use crate::campaign::{self, Campaign, FILE_NAME};
 use crate::judgement::Judgements;
 use crate::page::{Board, Listen, Order, Orders, Served, runtime, serve};
-use crate::pipeline;
+use crate::pipeline::{self, Options};
 use crate::results::Results;
 
 /// How the daemon works.
@@ -121,7 +121,11 @@ pub fn run(
 fn last_told(campaign: &Campaign, found: Results, diagnoser: &Diagnoser, board: &Board) -> Results {
     let results = pipeline::judged(found, &board.judgements());
     let diagnosis = diagnoser.last(campaign);
-    write(campaign, &results, diagnosis.as_deref(), &pipeline::results_folder(campaign));
+    let dir = pipeline::results_folder(campaign);
+    if let Err(error) = pipeline::write_appendix(campaign, &Options::default(), &dir) {
+        tracing::error!("appendix not written: {error}");
+    }
+    write(campaign, &results, diagnosis.as_deref(), &dir);
     results
 }
 
