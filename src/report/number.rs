@@ -51,6 +51,9 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     if value.is_finite() { rounded(value, -(decimals as i32)) } else { UNKNOWN.to_owned() }
 }
 
+/// Standard deviations beyond which an interval has no end that anybody could use.
+const UNBOUNDED: f64 = 1e4;
+
 /// The mean, to two significant digits of the standard deviation: `0.3796`.
 pub(crate) fn mean(estimate: &Estimate) -> String {
     parts(estimate).0
@@ -94,7 +97,14 @@ fn parts_within(estimate: &Estimate, digits: i32) -> (String, String) {
     }
     if estimate.sd.is_finite() && estimate.sd > 0.0 {
         let place = last_place(estimate.sd).max(first_place(estimate.mean) + 1 - digits);
-        let [mean, lo, hi] = known.map(|value| rounded(value, place));
+        let [mean, lo, hi] = known.map(|value| {
+            match (value - estimate.mean) / estimate.sd {
+                // The ratio of two numbers of which the lower may be nil.
+                off if off > UNBOUNDED => "∞".to_owned(),
+                off if off < -UNBOUNDED => "−∞".to_owned(),
+                _ => rounded(value, place),
+            }
+        });
         (mean, format!("[{lo}, {hi}]"))
     } else {
         let [mean, lo, hi] = known.map(|value| significant(value, 5));
@@ -123,6 +133,12 @@ mod tests {
         let unknown = Estimate { mean: f64::NAN, sd: f64::NAN, lo95: f64::NAN, hi95: f64::NAN };
         assert_eq!(estimate(&unknown), "\u{2013} [\u{2013}, \u{2013}]");
         assert_eq!(significant(f64::INFINITY, 3), "\u{2013}");
+    }
+
+    #[test]
+    fn a_bound_that_nothing_holds_is_infinite() {
+        let ratio = Estimate { mean: 14.7, sd: 21.0, lo95: 0.02, hi95: 1_073_741_824.0 };
+        assert_eq!(estimate(&ratio), "15 [0, ∞]");
     }
 
     #[test]
