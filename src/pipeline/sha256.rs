@@ -10,7 +10,11 @@ pub(super) fn sha256(mut source: impl Read) -> io::Result<String> {
     let mut bytes = vec![0; 1 << 16];
     loop {
         match source.read(&mut bytes)? {
-            0 => return Ok(digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()),
+            0 => {
+                let sum = digest.finalize();
+                let digits = sum.iter().map(|byte| format!("{byte:02x}"));
+                return Ok(digits.collect::<Vec<_>>().concat());
+            }
             n => digest.update(&bytes[..n]),
         }
     }
