@@ -99,9 +99,9 @@ fn a_forced_run_is_asked_for_calm_for_periods_for_dense_sampling() {
     run.run.still = Some(still(12.0, 0.0));
     assert_answered(&run, "calm-before-forced", Some(false), Some(12.0));
     let frequency_rad_s = run.run.excitation_rad_s.expect("it repeats");
-    run.run.end_s = run.run.start_s + 31.5 * std::f64::consts::TAU / frequency_rad_s;
+    run.run.end_s = run.run.start_s + 31.0 * std::f64::consts::TAU / frequency_rad_s;
     assert_answered(&run, "steady-periods", Some(true), Some(31.0));
-    run.run.end_s = run.run.start_s + 9.5 * std::f64::consts::TAU / frequency_rad_s;
+    run.run.end_s = run.run.start_s + 9.0 * std::f64::consts::TAU / frequency_rad_s;
     assert_answered(&run, "steady-periods", Some(false), Some(9.0));
     run.run.excitation_rad_s = None;
     assert_answered(&run, "steady-periods", None, None);
