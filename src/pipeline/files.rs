@@ -85,9 +85,10 @@ pub fn write_results(
     Ok(report::write_campaign(campaign, results, diagnosis, dir)?)
 }
 
+/// The live page reads the file while it is written anew.
 fn write_text(dir: &Path, name: &str, text: &str) -> Result<(), WriteError> {
-    let path = dir.join(name);
-    fs::write(&path, text).map_err(|source| WriteError::File { path, source })
+    report::write_whole(dir, name, text.as_bytes())?;
+    Ok(())
 }
 
 /// Removes the pages that an earlier replay wrote for runs that are no more.

@@ -31,6 +31,7 @@ pub use diagnosis_json::{DIAGNOSIS_SCHEMA, diagnosis_json};
 pub use diagnosis_text::diagnosis_text;
 pub use json::{IDENTIFICATION_NAME, IDENTIFICATION_SCHEMA, identification_json};
 pub use tables::{TableFormat, csv_tables, export_tables};
+pub use whole_file::write as write_whole;
 
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::ReportError;
 
 /// Writes `name` in `dir`: first beside it, then renamed, so that no reader sees half a file.
-pub(super) fn write(dir: &Path, name: &str, bytes: &[u8]) -> Result<PathBuf, ReportError> {
+pub fn write(dir: &Path, name: &str, bytes: &[u8]) -> Result<PathBuf, ReportError> {
     let path = dir.join(name);
     let unfinished = dir.join(format!(".{name}.unfinished"));
     let attempt = fs::create_dir_all(dir)
