@@ -1,6 +1,5 @@
 //! `rolltank export`: the results of a campaign as files that other programs read.
 
-use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -10,7 +9,9 @@ use super::method::Identifying;
 use super::{Exit, Failure, replaying, report};
 use crate::campaign::{self, Campaign};
 use crate::pipeline::WriteError;
-use crate::report::{IDENTIFICATION_SCHEMA, TableFormat, export_tables, identification_json};
+use crate::report::{
+    IDENTIFICATION_SCHEMA, TableFormat, export_tables, identification_json, write_whole,
+};
 use crate::results::Results;
 
 /// Write runs, damping, moment histories and rejections as CSV, JSON or Parquet
@@ -69,10 +70,7 @@ fn write(
                 ("identification.schema.json", IDENTIFICATION_SCHEMA),
             ];
             let write = |(name, text): (&str, &str)| {
-                let path = dir.join(name);
-                let attempt = fs::create_dir_all(dir).and_then(|()| fs::write(&path, text));
-                attempt.map_err(|source| Failure::File { path: path.clone(), source })?;
-                Ok(path)
+                Ok(write_whole(dir, name, text.as_bytes()).map_err(WriteError::from)?)
             };
             files.into_iter().map(write).collect()
         }

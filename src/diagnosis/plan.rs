@@ -52,6 +52,7 @@ pub(super) fn plans(tank: &Tank, survey: &Survey) -> Vec<(Plan, f64)> {
             plans.push((Plan { kind: RunKind::Decay, froude, amplitude_deg, tuning: 1.0 }, span_s));
         }
         if FORCED_FROUDES.iter().any(|f| (froude - f).abs() < 1e-9) {
+            // Lag and skew of a channel part only well above resonance (EFFECTS.md, section 6).
             for tuning in [0.75, 1.0, 1.2, 1.5] {
                 for amplitude_deg in [5.0, 10.0, 15.0] {
                     plans.push((

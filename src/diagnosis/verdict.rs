@@ -109,7 +109,8 @@ pub struct Diagnosis {
     pub model: ModelFile,
 }
 
-/// Share of what the base model leaves beyond which causes are no whole story.
+/// Share of what the base model leaves beyond which causes are no whole story; by trial on
+/// simulated campaigns, of whose catalogued effects it takes only free surfaces from their names.
 const MOST_LEFT: f64 = 0.1;
 
 /// Diagnoses the runs of a campaign; none without runs.
