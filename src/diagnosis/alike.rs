@@ -20,7 +20,7 @@ const ALIKE_SHARE: f64 = 0.1;
 
 /// A form that another takes at one value of its shape: it is no other cause where the runs say
 /// that the shape is within so much of it. A quarter of a power was set by trial on simulated
-/// campaigns: a power law of 1.7, the nearest that is drawn, stays a cause of its own.
+/// campaigns, whose power laws of 1.3 to 1.8 kept their name.
 const FORMS: [Form; 1] = [Form {
     wide: "damping.power_law",
     shape: "p",
