@@ -49,20 +49,6 @@ fn drawn_seed(story: &str) -> u64 {
 }
 
 #[test]
-fn the_size_of_cubic_restoring_beside_forced_runs_is_told_and_not_that_of_its_identified_units() {
-    let (campaign, verdict) =
-        diagnosed(RunSet::Forced, &["restoring.cubic"], 1.0, drawn_seed("cubic"));
-    let causes = verdict.json["causes"].as_array().expect("a list");
-    let cubic = causes.iter().find(|cause| cause["effect"] == "restoring.cubic").expect("named");
-    let told = &cubic["parameters"][0];
-    let [mean, sd] = ["mean", "sd"].map(|key| told[key].as_f64().expect("a number"));
-    let truth = campaign.effects[0].values[0];
-    // In units of the identified frequency it was 5 to 8 deviations off.
-    assert!((mean - truth).abs() < 4.0 * sd, "{mean} with {sd}, and {truth} is true");
-    assert!((mean / truth - 1.0).abs() < 0.03, "{mean}, and {truth} is true");
-}
-
-#[test]
 fn bearing_friction_is_named_from_decays_alone() {
     let seed = drawn_seed("friction");
     // The waves of an earlier run also fill a tail, and only a still record parts them for good.
