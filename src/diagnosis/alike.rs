@@ -7,12 +7,10 @@ use super::settle::Settled;
 use super::solve::solve;
 use super::survey::{Extension, Fit, Survey};
 use crate::model::effects;
-use crate::model::{Acts, Layer};
+use crate::model::{Acts, Layer, Scope};
 
 /// Difference of misfits below which two effects cannot be told apart.
 pub(super) const SAME: f64 = 12.0;
-/// The same as a share of what the effect explains.
-const SAME_SHARE: f64 = 0.01;
 /// The share below which two effects are alike where as much again is left unexplained: a residual
 /// wave fitted beside amplitude-dependent inertia in the measured decay of KVLCC2 sets cubic
 /// restoring, its equal in any decay, back by 6.5 %.
@@ -66,9 +64,8 @@ pub(super) fn open_shapes(
     Some((form, shapes.map(|(s, values)| (values[k], layout.parameter(fit, e, s, k))).collect()))
 }
 
-/// Whether these runs cannot tell a rival from the favourite: it is as probable, or explains all
-/// but a hundredth of the same, or falls a little behind, by less than what the favourite itself
-/// leaves: `left`, in units of the noise's variance.
+/// Whether these runs cannot tell a rival from the favourite: it is as probable, or falls a little
+/// behind, by less than what the favourite itself leaves: `left`, in units of the noise's variance.
 pub(super) fn is_same(
     survey: &Survey,
     before: &Settled,
@@ -76,24 +73,25 @@ pub(super) fn is_same(
     rival: &Settled,
     left: f64,
 ) -> bool {
-    if relabels_most(survey, rival) || is_form_of(survey, rival, favourite) {
+    if is_form_of(survey, rival, favourite) {
         return false;
     }
     let behind = favourite.log_evidence - rival.log_evidence;
     let gained = rival.log_evidence - before.log_evidence;
     let (most, as_well) = (explained(survey, before, favourite), explained(survey, before, rival));
-    let room = SAME.max(SAME_SHARE * most).max(left.min(ALIKE_SHARE * most));
+    let room = SAME.max(left.min(ALIKE_SHARE * most));
     // What is far less probable is no equal, whatever scatter lets it explain.
     let is_near = behind < SAME.max(ALIKE_SHARE * (gained + behind));
     let explains_it = gained > ENTERS && most - as_well < room && is_near;
-    (2.0 * behind < SAME && gained > 0.5 * ENTERS) || explains_it
+    let is_as_probable = 2.0 * behind < SAME && gained > 0.5 * ENTERS;
+    is_as_probable || (explains_it && !is_of_most_runs(survey, rival))
 }
 
-/// Whether a rival explains the runs by wrong labels on most of them: with numbers of its own for
-/// every run it comes near to any effect, and labels are wrong here and there, not everywhere.
-fn relabels_most(survey: &Survey, rival: &Settled) -> bool {
+/// Whether a rival has numbers of its own for most runs: with these it comes near to any effect,
+/// and only what they cost in evidence tells it from that.
+fn is_of_most_runs(survey: &Survey, rival: &Settled) -> bool {
     rival.fit.extensions.last().is_some_and(|newest| {
-        newest.effect.id == "run.mislabelled" && 2 * newest.slots.len() > survey.runs.len()
+        newest.effect.scope == Scope::Run && 2 * newest.slots.len() > survey.runs.len()
     })
 }
 

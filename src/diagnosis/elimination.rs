@@ -164,6 +164,23 @@ impl Eliminated {
         x
     }
 
+    /// Lets the coefficients of the kept columns from `first` on count from where they were
+    /// `moved_by` ago.
+    pub(super) fn refer_back(&mut self, first: usize, moved_by: &[f64]) {
+        let last = self.rest.n() - 1;
+        let mut places: Vec<Place> = (0..=last).map(|i| Place::new(i, i)).collect();
+        let moved = moved_by.iter().zip(first..);
+        places.extend(moved.map(|(by, theirs)| Place { theirs, ours: last, by: *by }));
+        let mut rest = Products::zero(last + 1);
+        rest.gather(&self.rest, &places);
+        self.rest = rest;
+        for row in self.rows.chunks_exact_mut(self.n) {
+            let moved = moved_by.iter().zip(&row[self.k + first..]);
+            let by: f64 = moved.map(|(by, factor)| by * factor).sum();
+            row[self.n - 1] += by;
+        }
+    }
+
     /// Covariance of the eliminated columns' coefficients, given those after them.
     pub(super) fn covariance(&self) -> Vec<Vec<f64>> {
         let of = |column: usize| {

@@ -5,6 +5,7 @@
 //! their evidence, so that the model grows by one effect at a time (`growth`) until nothing more
 //! is to be named.
 
+mod added;
 mod alike;
 mod backward;
 mod clipping;
@@ -12,6 +13,7 @@ mod cores;
 mod correction;
 mod elimination;
 mod facts;
+mod foretold;
 mod gain;
 mod growth;
 mod layout;

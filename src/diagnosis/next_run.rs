@@ -1,19 +1,18 @@
 //! Which run would say most: by the expected Bayes factor where causes are undecided, else by what
 //! the law of damping would gain.
 
-use std::sync::Arc;
-
+use super::added::Added;
 use super::alike::open_shapes;
 use super::cores;
-use super::elimination::Products;
+use super::foretold::{Rival, expected_log_bayes_factor, grown_survey, with_run};
 use super::growth::{Grown, leftovers};
-use super::observation::Observation;
 use super::plan::{Plan, plans};
-use super::run_fit::{RunState, predict, summarise};
-use super::score::{Scored, score};
-use super::settle::{Settled, settle};
-use super::solve::{Joint, OneMore};
+use super::run_fit::summarise;
+use super::score::score;
+use super::settle::settle;
+use super::solve::Joint;
 use super::survey::{Fit, N_LAW, Survey};
+use super::trial::fit_all;
 use crate::campaign::Tank;
 use crate::run::RunKind;
 
@@ -46,29 +45,6 @@ fn is_one_in_decays(a: &str, b: &str) -> bool {
     ONE_IN_DECAYS.iter().any(|pair| *pair == [a, b] || *pair == [b, a])
 }
 
-/// The fit with the set of each extension that a new run would have.
-fn with_run(survey: &Survey, fit: &Fit, run: &Observation, state: RunState) -> Fit {
-    let mut fit = fit.clone();
-    for extension in &mut fit.extensions {
-        let slot = match extension.effect.scope {
-            crate::model::Scope::Campaign => Some(0),
-            crate::model::Scope::Condition => Some(survey.condition_of[0]),
-            crate::model::Scope::Run => None,
-        };
-        extension.slot_of.push(slot.filter(|_| (extension.effect.shows)(&run.at)));
-    }
-    fit.states.push(state);
-    fit
-}
-
-fn grown_survey(survey: &Survey, run: Observation) -> Survey {
-    let mut runs = survey.runs.clone();
-    runs.push(Arc::new(run));
-    let mut condition_of = survey.condition_of.clone();
-    condition_of.push(survey.condition_of[0]);
-    Survey { runs, conditions: survey.conditions.clone(), condition_of }
-}
-
 /// Root mean square of what a model leaves of roll [rad] and moment [N m] in a middling run: to
 /// the next run that is noise too.
 fn left_in_channels(survey: &Survey, fit: &Fit) -> [f64; 2] {
@@ -79,79 +55,6 @@ fn left_in_channels(survey: &Survey, fit: &Fit) -> [f64; 2] {
         rms.sort_by(f64::total_cmp);
         rms.get(rms.len() / 2).copied().unwrap_or(0.0)
     })
-}
-
-/// Times that a rival is linearised anew on a run that it has not seen.
-const RELINEARISED: usize = 4;
-
-/// A rival with all that the runs so far say of it.
-struct Rival {
-    settled: Settled,
-    /// The runs so far under its scatter.
-    products: Products,
-    /// What they leave.
-    least_misfit: f64,
-}
-
-impl Rival {
-    fn new(survey: &Survey, settled: Settled) -> Self {
-        let joint = Joint::new(survey, &settled.fit, &settled.summaries);
-        let (_, products) = joint.gathered(&settled.solution.scatter);
-        let least_misfit = settled.solution.least_misfit;
-        Self { settled, products, least_misfit }
-    }
-}
-
-/// Half of the misfit that a rival would keep on a run that the favourite made, or the logarithm
-/// by which the run narrows the rival's shape.
-fn expected(
-    survey: &Survey,
-    (favourite_id, favourite): (&str, &Fit),
-    rival: &Rival,
-    (plan, span_s): &(Plan, f64),
-    left: [f64; 2],
-) -> f64 {
-    let (mut run, state, noise) = plan.observed(survey, favourite, *span_s, left);
-    let truth = with_run(survey, favourite, &run, state.clone());
-    let last = survey.runs.len();
-    let readings = predict(&run, &state, &truth.terms(last));
-    let n_roll = run.roll_time_s.len();
-    (run.roll_rad, run.moment_n_m) = (readings[..n_roll].to_vec(), readings[n_roll..].to_vec());
-    let known = &rival.settled.fit;
-    let law = known.laws[survey.condition_of[0]].at(plan.froude);
-    let mut guess = state;
-    (guess.base.natural_rad_s, guess.base.b1_per_s, guess.base.b3_s) = (law[0], law[1], law[2]);
-    guess.base.log_scale = known.log_scale;
-    let mut fit = with_run(survey, known, &run, guess);
-    let grown = grown_survey(survey, run);
-    let scatter = rival.settled.solution.scatter;
-    let mut left_over = f64::INFINITY;
-    let mut narrowed = None;
-    // The rival may answer with all its numbers, as far as the runs so far let it.
-    let mut terms = fit.terms(last);
-    for _ in 0..RELINEARISED {
-        let mut summary = summarise(&grown.runs[last], &fit.states[last], &terms, &[], &noise);
-        let moved_by: Vec<f64> = terms
-            .iter()
-            .zip(fit.terms(last))
-            .flat_map(|(now, then)| {
-                now.values.iter().zip(then.values).map(|(n, t)| n - t).collect::<Vec<_>>()
-            })
-            .collect();
-        summary.refer_back(&moved_by);
-        let solved = OneMore::new(&rival.products, &grown, &fit, &summary, &scatter);
-        left_over = solved.least_misfit();
-        narrowed = open_shapes(survey, known, favourite_id).map(|(_, shapes)| {
-            let covariance = solved.eliminated.covariance();
-            let before = &rival.settled.solution.covariance;
-            let gains =
-                shapes.iter().map(|(_, c)| 0.5 * (before[*c][*c] / covariance[*c][*c]).ln());
-            gains.fold(f64::INFINITY, f64::min)
-        });
-        (terms, fit.states[last]) = solved.moved(&grown, &fit, &summary);
-    }
-    // Where the rival is the favourite with its shape left open, nothing but that shape parts them.
-    narrowed.unwrap_or_else(|| 0.5 * (left_over - rival.least_misfit).max(0.0))
 }
 
 /// The run that says most.
@@ -194,25 +97,25 @@ fn parting(
 ) -> Option<NextRun> {
     let mut without = grown.last.fit.clone();
     without.extensions.remove(place);
-    let scored = score(survey, &without, &grown.noise);
-    let scored: Vec<&Scored> = rivals
-        .iter()
-        .filter_map(|id| scored.iter().find(|s| s.extension.effect.id == *id))
-        .collect();
-    let settled = cores::each(scored.len(), |k| {
-        let mut fit = without.clone();
-        fit.extensions.push(scored[k].extension.clone());
-        Rival::new(survey, settle(survey, fit, &grown.noise))
-    });
+    let without = settle(survey, without, &grown.noise);
+    let mut scored = score(survey, &without.fit, &grown.noise);
+    scored.retain(|s| rivals.contains(&s.extension.effect.id));
+    let tried = fit_all(survey, &without, &scored, &grown.noise);
+    let rivals_so_far: Vec<Rival> =
+        tried.into_iter().map(|one| Rival::new(survey, one.settled)).collect();
     let left = left_in_channels(survey, &grown.last.fit);
     let only_forced = rivals.iter().any(|rival| is_one_in_decays(favourite, rival));
     let mut plans = plans(tank, survey);
     plans.retain(|(plan, _)| !only_forced || plan.kind == RunKind::Forced);
     // The rival that is hardest to part decides.
     let hardest = cores::each(plans.len(), |k| {
-        settled
+        rivals_so_far
             .iter()
-            .map(|rival| expected(survey, (favourite, &grown.last.fit), rival, &plans[k], left))
+            .map(|rival| {
+                let planned = std::slice::from_ref(&plans[k]);
+                let favourite = (favourite, &grown.last.fit);
+                expected_log_bayes_factor(survey, favourite, rival, planned, left)
+            })
             .fold(f64::INFINITY, f64::min)
     });
     let mut best: Option<(f64, Plan)> = None;
@@ -226,7 +129,7 @@ fn parting(
     parts.extend(rivals);
     let w = grown.last.fit.laws[survey.condition_of[0]].numbers[0];
     let is_open = |rival: &Rival| open_shapes(survey, &rival.settled.fit, favourite).is_some();
-    let is_shape = settled.iter().any(is_open);
+    let is_shape = rivals_so_far.iter().any(is_open);
     let log = if is_shape { 0.0 } else { log };
     Some(told(&plan, w, parts, log, |what| {
         let rivals = rivals.join(", ");
@@ -296,7 +199,8 @@ fn informing(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<NextRun> {
         run.roll_rad = vec![0.0; run.roll_time_s.len()];
         run.moment_n_m = Vec::new();
         let summary = summarise(&run, &state, &terms, &[], &noise);
-        let solved = OneMore::new(&known, &grown_survey(survey, run), &fit, &summary, &scatter);
+        let grown = grown_survey(survey, vec![run]);
+        let solved = Added::new((&last.fit, &known), &grown, &fit, &[summary], &scatter);
         now - volume(&solved.eliminated.covariance())
     });
     let mut best: Option<(f64, Plan)> = None;

@@ -1,6 +1,6 @@
 //! One run under a model: what its channels should read, and what each number does to them.
 
-use super::elimination::{Eliminated, Place, Products, Side, product};
+use super::elimination::{Eliminated, Products, Side, product};
 use super::observation::Observation;
 use crate::model::course::{Course, N_COURSE};
 use crate::model::free::Decay;
@@ -115,16 +115,10 @@ impl Summary {
         empty
     }
 
-    /// Lets the steps of the terms' parameters count from where they were `moved_by` ago.
+    /// Lets the steps of the scale and of the terms' parameters count from where they were
+    /// `moved_by` ago, the scale first.
     pub(super) fn refer_back(&mut self, moved_by: &[f64]) {
-        let rest = &self.eliminated.rest;
-        let last = rest.n() - 1;
-        let mut places: Vec<Place> = (0..=last).map(|i| Place::new(i, i)).collect();
-        let moved = moved_by.iter().enumerate();
-        places.extend(moved.map(|(k, by)| Place { theirs: N_BASE + k, ours: last, by: *by }));
-        let mut referred = Products::zero(last + 1);
-        referred.gather(rest, &places);
-        self.eliminated.rest = referred;
+        self.eliminated.refer_back(N_BASE - 1, moved_by);
     }
 }
 

@@ -5,7 +5,6 @@ use super::layout::Layout;
 use super::run_fit::{RunState, Summary};
 use super::scatter::{Scatter, deviation, scatters, spread};
 use super::survey::{Extension, Fit, N_LAW, Survey};
-use crate::model::Term;
 
 const LOG_SCALE_SD: f64 = 0.03;
 /// Prior standard deviation of `bk` as a multiple of `b0`: kappa of the seed paper is 12.
@@ -22,7 +21,7 @@ pub(super) struct Marginal {
 }
 
 /// A run's deviation from its law, then base, terms, record.
-fn deviating(survey: &Survey, fit: &Fit, run: usize, summary: &Summary) -> Products {
+pub(super) fn deviating(survey: &Survey, fit: &Fit, run: usize, summary: &Summary) -> Products {
     let own = &summary.eliminated.rest;
     let n = own.n() + N_DEVIATIONS;
     let mut products = Products::zero(n);
@@ -42,7 +41,7 @@ fn deviating_places(survey: &Survey, fit: &Fit, run: usize, n: usize) -> Vec<Pla
 }
 
 /// Eliminates a run's deviation from its law.
-fn marginal(
+pub(super) fn marginal(
     survey: &Survey,
     fit: &Fit,
     run: usize,
@@ -134,7 +133,7 @@ impl<'a> Joint<'a> {
 }
 
 /// One more reading of a number: its prior, given where the number stands.
-fn add_prior(all: &mut Products, column: usize, off_centre: f64, sd: f64) {
+pub(super) fn add_prior(all: &mut Products, column: usize, off_centre: f64, sd: f64) {
     let (record, precision) = (all.n() - 1, sd.powi(-2));
     all.add(column, column, precision);
     all.add(column, record, -precision * off_centre);
@@ -267,7 +266,7 @@ pub(super) fn followed(
 }
 
 /// The parameters of the effects after a step.
-fn moved_extensions(fit: &Fit, layout: &Layout, steps: &[f64]) -> Vec<Extension> {
+pub(super) fn moved_extensions(fit: &Fit, layout: &Layout, steps: &[f64]) -> Vec<Extension> {
     let mut extensions = fit.extensions.clone();
     for (e, extension) in extensions.iter_mut().enumerate() {
         for (s, values) in extension.slots.iter_mut().enumerate() {
@@ -283,7 +282,7 @@ fn moved_extensions(fit: &Fit, layout: &Layout, steps: &[f64]) -> Vec<Extension>
 }
 
 /// Where a run stands after a share of what steps of the campaign's numbers are to it.
-fn moved_state(
+pub(super) fn moved_state(
     survey: &Survey,
     fit: &Fit,
     run: usize,
@@ -305,58 +304,6 @@ fn moved_state(
     state.base.b1_per_s += share * whole[1];
     state.base.b3_s += share * whole[2];
     state
-}
-
-/// A campaign solved with one more run, the last, whose readings alone are new.
-pub(super) struct OneMore {
-    /// The campaign's numbers eliminated.
-    pub(super) eliminated: Eliminated,
-    marginal: Marginal,
-    layout: Layout,
-    local: Vec<f64>,
-    steps: Vec<f64>,
-}
-
-impl OneMore {
-    /// Adds the last run of a survey to what the others gave.
-    pub(super) fn new(
-        others: &Products,
-        survey: &Survey,
-        fit: &Fit,
-        summary: &Summary,
-        scatter: &Scatter,
-    ) -> Self {
-        let (run, layout) = (survey.runs.len() - 1, Layout::new(survey, fit));
-        let own = deviating(survey, fit, run, summary);
-        let marginal = marginal(survey, fit, run, own, scatter);
-        let places = layout.places(survey, fit, run);
-        let mut all = others.clone();
-        all.gather(&marginal.eliminated.rest, &places);
-        let eliminated = all.eliminate(layout.n);
-        let steps = eliminated.back(&[]);
-        let local = Layout::local(&places, &steps);
-        Self { eliminated, marginal, layout, local, steps }
-    }
-
-    /// Least misfit that the linearised model reaches.
-    pub(super) fn least_misfit(&self) -> f64 {
-        self.eliminated.rest.at(0, 0)
-    }
-
-    /// The last run's effects and state after the step.
-    pub(super) fn moved(
-        &self,
-        survey: &Survey,
-        fit: &Fit,
-        summary: &Summary,
-    ) -> (Vec<Term>, RunState) {
-        let run = survey.runs.len() - 1;
-        let extensions = moved_extensions(fit, &self.layout, &self.steps);
-        let (marginal, local) = (&self.marginal, &self.local);
-        let mut state = moved_state(survey, fit, run, summary, marginal, local, 1.0);
-        state.base.log_scale = fit.log_scale + self.steps[self.layout.scale()];
-        (extensions.iter().filter_map(|extension| extension.term(run)).collect(), state)
-    }
 }
 
 impl Solution {

@@ -8,7 +8,7 @@ use crate::hidden_tank::plan::RunSet;
 use crate::hidden_tank::score::{UNTESTABLE, in_class};
 
 /// Pairs of the whole matrix, and the seeds of clean campaigns by one seed of the others.
-const PAIRS: usize = 50;
+const PAIRS_BY_SEED: usize = 5;
 const CLEAN_BY_SEED: u64 = 4;
 
 /// Every campaign that the arguments ask for, seed by seed, so that a matrix that is stopped early
@@ -42,8 +42,7 @@ pub(crate) fn all(arguments: &Arguments) -> Vec<Asked> {
         }
     }
     if arguments.effects.iter().any(|name| name == "pairs") {
-        let n_asked = arguments.seeds.end as usize * PAIRS / 10;
-        cells.extend(pairs(arguments).into_iter().take(n_asked));
+        cells.extend(arguments.seeds.clone().flat_map(|seed| pairs(arguments, seed)));
     }
     cells
 }
@@ -61,17 +60,17 @@ fn clean(arguments: &Arguments, seed: u64) -> Vec<Asked> {
 }
 
 /// Pairs of testable effects of different classes, on the richer run sets.
-fn pairs(arguments: &Arguments) -> Vec<Asked> {
+fn pairs(arguments: &Arguments, seed: u64) -> Vec<Asked> {
     let testable: Vec<&str> =
         CATALOGUED.iter().map(|row| row.id).filter(|id| !UNTESTABLE.contains(id)).collect();
-    let mut draw = Draw::named("pairs of hidden effects");
+    let mut draw = Draw::named(&format!("pairs of hidden effects, seed {seed}"));
     let mut all = Vec::new();
-    while all.len() < PAIRS {
+    while all.len() < PAIRS_BY_SEED {
         let set = [RunSet::Speeds, RunSet::Forced][draw.index(2)];
         let [one, other] = [(); 2].map(|()| testable[draw.index(testable.len())]);
-        let seed = all.len() as u64;
         if one != other && !in_class(one, other, set) {
-            all.push(asked(arguments, set, vec![one.into(), other.into()], 2.0, seed));
+            let own = seed * PAIRS_BY_SEED as u64 + all.len() as u64;
+            all.push(asked(arguments, set, vec![one.into(), other.into()], 2.0, own));
         }
     }
     all
