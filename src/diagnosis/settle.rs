@@ -14,7 +14,7 @@ pub(super) struct Settled {
 }
 
 /// Steps after which a model that still moves is taken where it is.
-const MOST_STEPS: usize = 12;
+const MOST_STEPS: usize = 40;
 /// Steps that the runs' own numbers are given to follow a step of the campaign's.
 const FOLLOWING: usize = 3;
 /// What they may still gain by it when the campaign steps again.
@@ -27,28 +27,37 @@ pub(super) fn settle(survey: &Survey, start: Fit, noise: &[ChannelNoise]) -> Set
     let mut fit = start;
     let mut summaries = survey.summaries(&fit, noise, &|_| Vec::new());
     let mut n_steps = 0;
-    let mut n_followed = 0;
+    let (mut n_followed, mut misfit_before) = (0, f64::INFINITY);
     loop {
         let (solution, log_evidence) = solve_best(survey, &fit, &summaries);
         let promised = solution.misfit_here - solution.least_misfit;
         let own: f64 = summaries.iter().map(|summary| summary.own_gain).sum();
         let unfollowed = own + solution.unsettled(survey, &fit);
-        if n_steps == MOST_STEPS || promised + unfollowed < SMALL_GAIN {
+        if promised + unfollowed < SMALL_GAIN {
             return Settled { fit, solution, log_evidence, summaries };
         }
         // A long record bends the valley: the runs' own numbers follow what the campaign's did
-        // before it steps again.
-        if n_steps > 0 && unfollowed > UNFOLLOWED && n_followed < FOLLOWING {
+        // before it steps again, while that brings them lower.
+        let still_falls = misfit_before - solution.misfit_here > SMALL_GAIN;
+        if n_steps > 0 && unfollowed > UNFOLLOWED && n_followed < FOLLOWING && still_falls {
+            misfit_before = solution.misfit_here;
             fit = followed(survey, &fit, &summaries, &solution.scatter);
             summaries = survey.summaries(&fit, noise, &|_| Vec::new());
             n_followed += 1;
             continue;
         }
-        match stepped(survey, &fit, &summaries, &solution, noise) {
-            Some(better) => (fit, summaries) = better,
-            None => return Settled { fit, solution, log_evidence, summaries },
-        }
-        (n_steps, n_followed) = (n_steps + 1, 0);
+        let better = if n_steps < MOST_STEPS {
+            stepped(survey, &fit, &summaries, &solution, noise)
+        } else {
+            None
+        };
+        let Some(better) = better else {
+            // What is promised to a fit that gets no further is no evidence for it.
+            let log_evidence = log_evidence - 0.5 * promised;
+            return Settled { fit, solution, log_evidence, summaries };
+        };
+        (fit, summaries) = better;
+        (n_steps, n_followed, misfit_before) = (n_steps + 1, 0, f64::INFINITY);
     }
 }
 
