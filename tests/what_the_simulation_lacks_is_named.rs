@@ -178,5 +178,5 @@ fn the_measured_tanker_lacks_cubic_restoring_or_an_inertia_that_changes_with_the
     let gain = energy(&diagnosis.left_before) / energy(&diagnosis.left_after);
     assert!(gain > 50.0, "residual energy falls by {gain:.0} times");
     let next = diagnosis.next_run.expect("a run that parts them");
-    assert_eq!(next.kind, "forced", "{}", next.why);
+    assert_eq!(next.run.kind, "forced", "{}", next.why);
 }

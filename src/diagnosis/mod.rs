@@ -36,7 +36,7 @@ mod verdict;
 
 pub use correction::{Corrected, corrected};
 pub use leftover::Leftover;
-pub use next_run::NextRun;
+pub use next_run::{NextRun, PlannedRun};
 pub use observation::Observation;
 pub use unexplained::Unexplained;
 pub use verdict::{Bias, Cause, Change, Diagnosis, Gain, Verdict, diagnose};

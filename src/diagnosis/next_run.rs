@@ -16,9 +16,9 @@ use super::trial::fit_all;
 use crate::campaign::Tank;
 use crate::run::RunKind;
 
-/// A run worth towing.
+/// A run as it would be made.
 #[derive(Debug, Clone, PartialEq)]
-pub struct NextRun {
+pub struct PlannedRun {
     /// `decay`, `forced` or `rest_reading`.
     pub kind: &'static str,
     /// Froude number [-].
@@ -27,6 +27,15 @@ pub struct NextRun {
     pub frequency_rad_s: Option<f64>,
     /// Roll amplitude [deg].
     pub amplitude_deg: f64,
+}
+
+/// A run worth towing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NextRun {
+    /// The run.
+    pub run: PlannedRun,
+    /// Another to tow with it, where one run alone is not expected to decide.
+    pub with: Option<PlannedRun>,
     /// The effects that it parts.
     pub parts: Vec<&'static str>,
     /// Expected logarithm of the Bayes factor between them, or of the law's volume.
@@ -57,6 +66,13 @@ fn left_in_channels(survey: &Survey, fit: &Fit) -> [f64; 2] {
     })
 }
 
+/// Expected logarithm of a Bayes factor at which nine runs in ten decide: the misfits of two
+/// models that lie `D` apart differ by `D` with a standard deviation of `2 sqrt(D)`, and must by
+/// 12; `D - 1.28 * 2 sqrt(D) > 12` from `D = 25` on.
+const DECIDES: f64 = 12.5;
+/// What a second run must bring to be asked for.
+const WORTH_A_RUN: f64 = 2.0;
+
 /// The run that says most.
 pub(super) fn next_run(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<NextRun> {
     let undecided = grown.entered.iter().enumerate().find(|(_, e)| !e.equivalent_to.is_empty());
@@ -73,10 +89,13 @@ pub(super) fn next_run(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<Ne
         let mut parts = vec![extension.effect.id];
         parts.extend(extension.effect.always_equivalent);
         return Some(NextRun {
-            kind: "rest_reading",
-            froude: 0.0,
-            frequency_rad_s: None,
-            amplitude_deg: 0.0,
+            run: PlannedRun {
+                kind: "rest_reading",
+                froude: 0.0,
+                frequency_rad_s: None,
+                amplitude_deg: 0.0,
+            },
+            with: None,
             parts,
             expected_log_bayes_factor: 0.0,
             why: "no roll test parts a heel of the model from a zero of its channel; an \
@@ -107,69 +126,67 @@ fn parting(
     let only_forced = rivals.iter().any(|rival| is_one_in_decays(favourite, rival));
     let mut plans = plans(tank, survey);
     plans.retain(|(plan, _)| !only_forced || plan.kind == RunKind::Forced);
-    // The rival that is hardest to part decides.
-    let hardest = cores::each(plans.len(), |k| {
-        rivals_so_far
-            .iter()
-            .map(|rival| {
-                let planned = std::slice::from_ref(&plans[k]);
-                let favourite = (favourite, &grown.last.fit);
-                expected_log_bayes_factor(survey, favourite, rival, planned, left)
-            })
-            .fold(f64::INFINITY, f64::min)
-    });
-    let mut best: Option<(f64, Plan)> = None;
-    for (least, planned) in hardest.into_iter().zip(plans) {
-        if least.is_finite() && best.is_none_or(|(most, _)| least > 1.05 * most) {
-            best = Some((least, planned.0));
+    let best_of = |sets: Vec<Vec<(Plan, f64)>>| {
+        let favourite = (favourite, &grown.last.fit);
+        // The rival that is hardest to part decides.
+        let hardest = cores::each(sets.len(), |k| {
+            rivals_so_far
+                .iter()
+                .map(|rival| expected_log_bayes_factor(survey, favourite, rival, &sets[k], left))
+                .fold(f64::INFINITY, f64::min)
+        });
+        let mut best: Option<(f64, Vec<(Plan, f64)>)> = None;
+        for (least, set) in hardest.into_iter().zip(sets) {
+            if least.is_finite() && best.as_ref().is_none_or(|(most, _)| least > 1.05 * most) {
+                best = Some((least, set));
+            }
         }
-    }
-    let (log, plan) = best?;
-    let mut parts = vec![favourite];
-    parts.extend(rivals);
-    let w = grown.last.fit.laws[survey.condition_of[0]].numbers[0];
+        best
+    };
+    let (mut log, mut set) = best_of(plans.iter().map(|plan| vec![*plan]).collect())?;
     let is_open = |rival: &Rival| open_shapes(survey, &rival.settled.fit, favourite).is_some();
     let is_shape = rivals_so_far.iter().any(is_open);
-    let log = if is_shape { 0.0 } else { log };
-    Some(told(&plan, w, parts, log, |what| {
-        let rivals = rivals.join(", ");
-        if is_shape {
-            return format!(
-                "{what} tells the shape of {rivals} best, and whether it is {favourite}"
-            );
-        }
+    if log < DECIDES
+        && !is_shape
+        && let Some((both, couple)) = best_of(couples(&plans, set[0]))
+        && both > log + WORTH_A_RUN
+    {
+        (log, set) = (both, couple);
+    }
+    let w = grown.last.fit.laws[survey.condition_of[0]].numbers[0];
+    let what = set.iter().map(|(plan, _)| plan.words(w)).collect::<Vec<_>>().join(" with ");
+    let names = rivals.join(", ");
+    let why = if is_shape {
+        format!("{what} tells the shape of {names} best, and whether it is {favourite}")
+    } else {
+        let part = if set.len() > 1 { "part" } else { "parts" };
+        let doubt = if log < DECIDES { ", which may not decide" } else { "" };
         format!(
-            "{what} parts {favourite} from {rivals} by an expected log Bayes factor of {log:.0}"
+            "{what} {part} {favourite} from {names} by an expected log Bayes factor of \
+             {log:.0}{doubt}"
         )
-    }))
+    };
+    let mut runs = set.iter().map(|(plan, _)| plan.told(w));
+    Some(NextRun {
+        run: runs.next()?,
+        with: runs.next(),
+        parts: std::iter::once(favourite).chain(rivals.iter().copied()).collect(),
+        expected_log_bayes_factor: if is_shape { 0.0 } else { log },
+        why,
+    })
 }
 
-fn told(
-    plan: &Plan,
-    natural_rad_s: f64,
-    parts: Vec<&'static str>,
-    log: f64,
-    why: impl Fn(&str) -> String,
-) -> NextRun {
-    let frequency_rad_s = (plan.kind == RunKind::Forced).then_some(plan.tuning * natural_rad_s);
-    let what = match frequency_rad_s {
-        Some(w) => format!(
-            "a forced run of {:.0} deg at {w:.2} rad/s ({}) and Fr {:.2}",
-            plan.amplitude_deg,
-            if (plan.tuning - 1.0).abs() < 0.01 { "at resonance" } else { "off resonance" },
-            plan.froude
-        ),
-        None => format!("a decay from {:.0} deg at Fr {:.2}", plan.amplitude_deg, plan.froude),
-    };
-    NextRun {
-        kind: if plan.kind == RunKind::Forced { "forced" } else { "decay" },
-        froude: plan.froude,
-        frequency_rad_s,
-        amplitude_deg: plan.amplitude_deg,
-        parts,
-        expected_log_bayes_factor: log,
-        why: why(&what),
+/// Two runs that may decide together: the rod at two speeds, or any run beside the best.
+fn couples(plans: &[(Plan, f64)], best: (Plan, f64)) -> Vec<Vec<(Plan, f64)>> {
+    let mut all: Vec<_> = plans.iter().map(|other| vec![best, *other]).collect();
+    for (k, one) in plans.iter().enumerate() {
+        let at_other_speed = plans[k + 1..].iter().filter(|(other, _)| {
+            let is_like = Plan { froude: one.0.froude, ..*other } == one.0;
+            one.0.kind == RunKind::Forced && is_like
+        });
+        all.extend(at_other_speed.map(|other| vec![*one, *other]));
     }
+    all
 }
 
 /// The decay that narrows the law of damping most.
@@ -211,7 +228,11 @@ fn informing(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<NextRun> {
     }
     let (log, plan) = best?;
     let w = last.fit.laws[survey.condition_of[0]].numbers[0];
-    Some(told(&plan, w, Vec::new(), log, |what| {
-        format!("no cause is undecided; {what} narrows b0 and kappa most")
-    }))
+    Some(NextRun {
+        run: plan.told(w),
+        with: None,
+        parts: Vec::new(),
+        expected_log_bayes_factor: log,
+        why: format!("no cause is undecided; {} narrows b0 and kappa most", plan.words(w)),
+    })
 }

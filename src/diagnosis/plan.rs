@@ -1,5 +1,6 @@
 //! Runs that could be made, and how each would be observed.
 
+use super::next_run::PlannedRun;
 use super::observation::Observation;
 use super::run_fit::{ChannelNoise, RunState};
 use super::survey::{Fit, Survey};
@@ -8,7 +9,7 @@ use crate::model::course::N_COURSE;
 use crate::run::RunKind;
 
 /// A run that could be made.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Plan {
     pub(super) kind: RunKind,
     /// Froude number [-].
@@ -68,6 +69,31 @@ pub(super) fn plans(tank: &Tank, survey: &Survey) -> Vec<(Plan, f64)> {
 }
 
 impl Plan {
+    /// The run as it is told, for a model of this natural frequency [rad/s].
+    pub(super) fn told(&self, natural_rad_s: f64) -> PlannedRun {
+        let is_forced = self.kind == RunKind::Forced;
+        PlannedRun {
+            kind: self.kind.name(),
+            froude: self.froude,
+            frequency_rad_s: is_forced.then_some(self.tuning * natural_rad_s),
+            amplitude_deg: self.amplitude_deg,
+        }
+    }
+
+    /// The same in words.
+    pub(super) fn words(&self, natural_rad_s: f64) -> String {
+        let Self { froude, amplitude_deg, .. } = self;
+        if self.kind == RunKind::Decay {
+            return format!("a decay from {amplitude_deg:.0} deg at Fr {froude:.2}");
+        }
+        let w = self.tuning * natural_rad_s;
+        let place = if (self.tuning - 1.0).abs() < 0.01 { "at" } else { "off" };
+        format!(
+            "a forced run of {amplitude_deg:.0} deg at {w:.2} rad/s ({place} resonance) and \
+             Fr {froude:.2}"
+        )
+    }
+
     /// The run as it would be observed under a fit, without noise.
     pub(super) fn observed(
         &self,

@@ -1,5 +1,6 @@
 //! Gathering the runs of a campaign for the diagnosis while they are identified.
 
+use std::f64::consts::TAU;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::campaign::Campaign;
@@ -11,6 +12,8 @@ use crate::run::RunKind;
 /// Most runs that are diagnosed together: more repeat each other, and a diagnosis takes time with
 /// their square.
 const MOST_RUNS: usize = 100;
+/// Periods within which nobody brings a model to rest, heels it and lets it go.
+const PERIODS_TO_RELEASE: f64 = 4.0;
 /// Runs this near in Froude number and roll [rad] are repeats.
 const NEAR: [f64; 2] = [0.02, 0.03];
 
@@ -19,14 +22,46 @@ const NEAR: [f64; 2] = [0.02, 0.03];
 pub struct Observed {
     observations: Vec<(Place, Observation)>,
     left_out: Vec<String>,
+    last: Option<LastHeard>,
     n_heard: usize,
     n_repeats: usize,
+}
+
+/// What is remembered of the run heard last.
+#[derive(Debug, Clone)]
+struct LastHeard {
+    id: String,
+    recording: String,
+    kind: RunKind,
+    end_s: f64,
+}
+
+impl LastHeard {
+    /// Whether a decay is a later part of this one: what water in the hull or a memory did before
+    /// it began is not known.
+    fn goes_on_in(&self, run: &IdentifiedRun) -> bool {
+        let period_s = TAU / run.identification.natural_frequency_rad_s.mean;
+        let after_s = run.run.start_s - self.end_s;
+        let are_decays = self.kind == RunKind::Decay && run.run.kind == RunKind::Decay;
+        let is_near = (0.0..PERIODS_TO_RELEASE * period_s).contains(&after_s);
+        are_decays && is_near && self.recording == run.recording
+    }
 }
 
 impl Observed {
     /// Takes a run whose histories are still with it.
     pub fn hear(&mut self, run: &IdentifiedRun, campaign: &Campaign) {
-        match Observation::new(run, campaign, self.n_heard) {
+        let observation = match self.last.as_ref().filter(|last| last.goes_on_in(run)) {
+            Some(last) => Err(format!("it goes on from {}, and did not begin at rest", last.id)),
+            None => Observation::new(run, campaign, self.n_heard),
+        };
+        self.last = Some(LastHeard {
+            id: run.id.clone(),
+            recording: run.recording.clone(),
+            kind: run.run.kind,
+            end_s: run.run.end_s,
+        });
+        match observation {
             Ok(observation) => {
                 let (start_s, end_s) = (run.run.start_s, run.run.end_s);
                 let place = Place { recording: run.recording.clone(), start_s, end_s };

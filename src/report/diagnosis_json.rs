@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::diagnosis::{
-    Bias, Cause, Change, Diagnosis, Gain, Leftover, NextRun, Unexplained, Verdict,
+    Bias, Cause, Change, Diagnosis, Gain, Leftover, NextRun, PlannedRun, Unexplained, Verdict,
 };
 use crate::inverse::estimate::Estimate;
 use crate::model::effects::UNTESTABLE;
@@ -113,16 +113,24 @@ fn bias(all: &[Bias]) -> Value {
     whole
 }
 
+/// The contract's keys of the run beside those of the choice.
 fn next_run(next: &NextRun) -> Value {
-    json!({
-        "kind": next.kind,
-        "froude": next.froude,
-        "frequency_rad_s": next.frequency_rad_s,
-        "amplitude_deg": next.amplitude_deg,
-        "parts": next.parts,
-        "expected_log10_bayes_factor": log10(next.expected_log_bayes_factor),
-        "why": next.why,
-    })
+    let mut object = planned_run(&next.run);
+    object.insert("with".to_owned(), next.with.as_ref().map(planned_run).into());
+    object.insert("parts".to_owned(), json!(next.parts));
+    let log = log10(next.expected_log_bayes_factor);
+    object.insert("expected_log10_bayes_factor".to_owned(), json!(log));
+    object.insert("why".to_owned(), json!(next.why));
+    Value::Object(object)
+}
+
+fn planned_run(run: &PlannedRun) -> Map<String, Value> {
+    let mut object = Map::new();
+    object.insert("kind".to_owned(), json!(run.kind));
+    object.insert("froude".to_owned(), json!(run.froude));
+    object.insert("frequency_rad_s".to_owned(), json!(run.frequency_rad_s));
+    object.insert("amplitude_deg".to_owned(), json!(run.amplitude_deg));
+    object
 }
 
 fn residual(diagnosis: &Diagnosis) -> Value {
