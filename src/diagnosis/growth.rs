@@ -18,6 +18,9 @@ const ENOUGH: f64 = 0.2;
 const CRUMB: f64 = 0.03;
 /// The same for an effect that each run has of its own, which takes up much of anything.
 const CRUMB_OF_EACH_RUN: f64 = 0.25;
+/// What an effect takes of what is left, over the logarithm of its Bayes factor, where that is
+/// what speaks for it; it would be two if nothing else did.
+const OF_LEFTOVER: f64 = 0.5;
 /// Share of the evidence of any effect below which another is a want of form of the first.
 const CRUMB_OF_EVIDENCE: f64 = 0.01;
 /// Most effects of a model.
@@ -192,9 +195,13 @@ fn winner(
     let removed = excess(&before) - left;
     let newest = best.settled.fit.extensions.last();
     let is_of_each_run = newest.is_some_and(|newest| newest.effect.scope == Scope::Run);
+    // What makes the runs agree better takes nothing from what each of them leaves, and is no
+    // crumb of that.
+    let is_of_leftover = removed > OF_LEFTOVER * log_bayes_factor;
     let is_crumb = |entered: &Entered| {
         let share = if is_of_each_run { CRUMB_OF_EACH_RUN } else { CRUMB };
-        (is_approximate(entered.id) && removed < share * entered.removed)
+        let is_rest = is_approximate(entered.id) && removed < share * entered.removed;
+        (is_rest && is_of_leftover)
             || log_bayes_factor < CRUMB_OF_EVIDENCE * entered.log_bayes_factor
     };
     if known.iter().any(is_crumb) {

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use super::cores;
 use super::observation::Observation;
 use super::run_fit::{ChannelNoise, RunState, Summary, misfit, predict, residual, summarise};
-use crate::model::{Effect, Term};
+use crate::model::{Base, Effect, Term};
+use crate::run::RunKind;
 
 /// The runs with the condition that each belongs to.
 pub(super) struct Survey {
@@ -71,6 +72,22 @@ impl Extension {
     }
 }
 
+/// Lets runs whose crests are cut off, which identify anything, start from what the whole decays of
+/// their condition say.
+fn start_cut_off_runs(runs: &mut [Observation]) {
+    let is_whole = |run: &Observation| run.facts.clip.is_none() && run.at.kind == RunKind::Decay;
+    let whole: Vec<(String, Base)> = runs
+        .iter()
+        .filter(|run| is_whole(run))
+        .map(|run| (run.condition.clone(), run.base))
+        .collect();
+    for run in runs.iter_mut().filter(|run| run.facts.clip.is_some()) {
+        if let Some((_, base)) = whole.iter().find(|(condition, _)| *condition == run.condition) {
+            run.base = *base;
+        }
+    }
+}
+
 impl Survey {
     /// Puts runs together.
     pub(super) fn new(mut runs: Vec<Observation>) -> Self {
@@ -80,6 +97,7 @@ impl Survey {
         for run in &mut runs {
             run.read_within(largest_rad);
         }
+        start_cut_off_runs(&mut runs);
         let condition_of = runs
             .iter_mut()
             .map(|run| {
