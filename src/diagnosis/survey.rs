@@ -6,7 +6,6 @@ use super::cores;
 use super::observation::Observation;
 use super::run_fit::{ChannelNoise, RunState, Summary, misfit, predict, residual, summarise};
 use crate::model::{Base, Effect, Term};
-use crate::run::RunKind;
 
 /// The runs with the condition that each belongs to.
 pub(super) struct Survey {
@@ -72,22 +71,6 @@ impl Extension {
     }
 }
 
-/// Lets runs whose crests are cut off, which identify anything, start from what the whole decays of
-/// their condition say.
-fn start_cut_off_runs(runs: &mut [Observation]) {
-    let is_whole = |run: &Observation| run.facts.clip.is_none() && run.at.kind == RunKind::Decay;
-    let whole: Vec<(String, Base)> = runs
-        .iter()
-        .filter(|run| is_whole(run))
-        .map(|run| (run.condition.clone(), run.base))
-        .collect();
-    for run in runs.iter_mut().filter(|run| run.facts.clip.is_some()) {
-        if let Some((_, base)) = whole.iter().find(|(condition, _)| *condition == run.condition) {
-            run.base = *base;
-        }
-    }
-}
-
 impl Survey {
     /// Puts runs together.
     pub(super) fn new(mut runs: Vec<Observation>) -> Self {
@@ -97,7 +80,6 @@ impl Survey {
         for run in &mut runs {
             run.read_within(largest_rad);
         }
-        start_cut_off_runs(&mut runs);
         let condition_of = runs
             .iter_mut()
             .map(|run| {
@@ -114,30 +96,59 @@ impl Survey {
 
     /// The fit that the identifications of the runs suggest.
     pub(super) fn first_fit(&self) -> Fit {
-        let laws = (0..self.conditions.len())
-            .map(|condition| {
-                let members = self.members(condition);
-                let mean = |of: fn(&Observation) -> f64| {
-                    members.iter().map(|r| of(&self.runs[*r])).sum::<f64>() / members.len() as f64
-                };
-                let (w, b3) = (mean(|r| r.base.natural_rad_s), mean(|r| r.base.b3_s));
-                let (x, y) = (mean(|r| r.at.froude.powi(2)), mean(|r| r.base.b1_per_s));
-                let (mut sxx, mut sxy) = (0.0, 0.0);
-                for r in &members {
-                    let dx = self.runs[*r].at.froude.powi(2) - x;
-                    sxx += dx * dx;
-                    sxy += dx * (self.runs[*r].base.b1_per_s - y);
-                }
-                let bk = if sxx > 1e-8 { sxy / sxx } else { 0.0 };
-                Law { numbers: [w, y - bk * x, bk, b3] }
-            })
-            .collect();
-        let states = self
-            .runs
-            .iter()
-            .map(|run| RunState { own: run.start.clone(), base: run.base })
-            .collect();
+        let n_conditions = self.conditions.len();
+        let middling: Vec<Base> = (0..n_conditions).map(|c| self.middling_base(c)).collect();
+        let states = self.each_run(&|run| self.start(run, middling[self.condition_of[run]]));
+        let laws = (0..n_conditions).map(|condition| self.first_law(condition, &states)).collect();
         Fit { laws, log_scale: 0.0, extensions: Vec::new(), states }
+    }
+
+    /// The law through the numbers of a condition's runs.
+    fn first_law(&self, condition: usize, states: &[RunState]) -> Law {
+        let members = self.members(condition);
+        let n = members.len() as f64;
+        let mean = |of: &dyn Fn(usize) -> f64| members.iter().map(|r| of(*r)).sum::<f64>() / n;
+        let square = |r: usize| self.runs[r].at.froude.powi(2);
+        let (w, b3) = (mean(&|r| states[r].base.natural_rad_s), mean(&|r| states[r].base.b3_s));
+        let (x, y) = (mean(&square), mean(&|r| states[r].base.b1_per_s));
+        let (mut sxx, mut sxy) = (0.0, 0.0);
+        for r in &members {
+            let dx = square(*r) - x;
+            sxx += dx * dx;
+            sxy += dx * (states[*r].base.b1_per_s - y);
+        }
+        let bk = if sxx > 1e-8 { sxy / sxx } else { 0.0 };
+        Law { numbers: [w, y - bk * x, bk, b3] }
+    }
+
+    /// Medians of what the runs of a condition identify.
+    fn middling_base(&self, condition: usize) -> Base {
+        let members = self.members(condition);
+        let median = |of: fn(&Base) -> f64| {
+            let mut all: Vec<f64> = members.iter().map(|r| of(&self.runs[*r].base)).collect();
+            all.sort_by(f64::total_cmp);
+            all[all.len() / 2]
+        };
+        Base {
+            natural_rad_s: median(|base| base.natural_rad_s),
+            b1_per_s: median(|base| base.b1_per_s),
+            b3_s: median(|base| base.b3_s),
+            log_scale: 0.0,
+        }
+    }
+
+    /// Where a run starts: at its own numbers, unless those of a middling run do better; what a
+    /// record with crests cut off or an odd law identifies may be far from any.
+    fn start(&self, run: usize, middling: Base) -> RunState {
+        let observation = &self.runs[run];
+        let noise = ChannelNoise { sd: observation.rough_noise, correlation: [0.0; 2] };
+        let at = |base: Base| RunState { own: observation.start.clone(), base };
+        let left = |state: &RunState| {
+            let misfit = misfit(observation, state, &[], &noise);
+            if misfit.is_finite() { misfit } else { f64::MAX }
+        };
+        let (own, other) = (at(observation.base), at(middling));
+        if left(&other) < left(&own) { other } else { own }
     }
 
     /// The runs of a condition.

@@ -8,7 +8,7 @@ pub(super) const EFFECT: Effect = Effect {
     id: "exciter.arm_geometry",
     layer: Layer::Exciter,
     equation: "M (1 + s (1/cos(phi) - 1))",
-    strengths: &[Parameter::new("s", "-", 1.0, [0.3, 1.7])],
+    strengths: &[Parameter::new("s", "-", 1.0, [0.3, 2.5])],
     shapes: &[],
     nodes: one_node,
     scope: Scope::Campaign,
