@@ -10,7 +10,7 @@ pub(super) const EFFECT: Effect = Effect {
     id: "damping.displacement_weighted",
     layer: Layer::Damping,
     equation: "bf phi^2 phi'",
-    strengths: &[Parameter::new("bf", "1/s", 15.0, [0.0, 150.0])],
+    strengths: &[Parameter::new("bf", "1/s", 15.0, [0.0, 400.0])],
     shapes: &[],
     nodes: one_node,
     scope: Scope::Condition,
