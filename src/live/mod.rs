@@ -23,7 +23,6 @@ mod reporting;
 mod session;
 mod showing;
 mod supervisor;
-mod tally;
 mod telling;
 mod under_way;
 mod virtual_day;

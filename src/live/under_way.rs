@@ -226,8 +226,9 @@ impl UnderWay<'_> {
             attached.take(link, now_s, &mut self.state.losses, &mut taken);
         }
         taken.records.drain(..).for_each(|record| self.keeper.push(record));
-        self.samples(&taken.samples, link.at_ns().unwrap_or(now_ns));
+        self.samples(&taken, link.at_ns().unwrap_or(now_ns));
         taken.samples.clear();
+        taken.counted.clear();
         self.state.taken = taken;
     }
 
@@ -256,14 +257,14 @@ impl UnderWay<'_> {
         });
     }
 
-    fn samples(&mut self, samples: &[Sample], at_ns: u64) {
+    fn samples(&mut self, Taken { samples, counted, .. }: &Taken, at_ns: u64) {
         if samples.iter().any(|sample| sample.quantity == Quantity::Roll) {
             self.state.roll_ns = at_ns;
         }
         self.show(samples);
         // What is not recorded would be missing in a replay.
         let Some(runs) = self.runs.as_mut().filter(|_| self.keeper.records()) else { return };
-        runs.push(samples, &mut self.state.found);
+        runs.push(samples, counted, &mut self.state.found);
         if !runs.is_at_rest() {
             self.state.moved_ns = at_ns;
         }
