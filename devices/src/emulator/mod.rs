@@ -4,19 +4,21 @@
 //! one line in [`EMULATORS`]. Faults come on command. The signals come from outside, so that a test
 //! can send a number and a simulated tank a roll.
 
+mod cable;
 mod cobs_board;
 mod dcon_module;
+mod emulated_port;
 mod faults;
 mod hbm_digitiser;
 mod line_pace;
 mod mantrabus_cell;
 mod mantracourt_cell;
 mod modbus_transmitter;
-mod pty;
+mod openings;
 mod text_board;
 
+pub use emulated_port::{EmulatedPort, EmulatorError};
 pub use faults::{Fault, Faults};
-pub use pty::{EmulatedPort, EmulatorError};
 
 use crate::driver::SettingsError;
 
