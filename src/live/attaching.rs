@@ -39,12 +39,7 @@ pub(super) fn forward<'s>(
 ) -> ScopedJoinHandle<'s, ()> {
     scope.spawn(move || {
         while !detach.is_wanted() {
-            let Some(link) = reader.next(WAIT) else {
-                if reader.is_over() {
-                    break;
-                }
-                continue;
-            };
+            let Some(link) = reader.next(WAIT) else { continue };
             if events.blocking_send(Event::Link { device, link }).is_err() {
                 return;
             }

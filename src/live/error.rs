@@ -61,9 +61,6 @@ pub enum LiveError {
         #[from]
         source: ServeError,
     },
-    /// A port's thread has died.
-    #[error("the thread of a port has died; its own message stands above")]
-    PortThread,
     /// The system gives no thread, signal or socket.
     #[error("the system gives no {what}")]
     System {
@@ -91,7 +88,6 @@ impl LiveError {
             Self::Serve { source } => Some(source.hint().to_owned()),
             Self::Campaign { .. }
             | Self::Attachment { .. }
-            | Self::PortThread
             | Self::System { .. } => None,
         }
     }

@@ -145,7 +145,7 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
         Ended::Reloaded(_) => "a new campaign file came into force",
         Ended::Rotated => "it was long enough",
         Ended::Paused(_) | Ended::Resumed => "somebody stopped the recording",
-        Ended::Broken => "the thread of a port died",
+        Ended::RoomAgain => "the disk has room again",
     };
     let closed = keeper.close(reason)?;
     let results = results.unwrap_or_else(|panic| std::panic::resume_unwind(panic));

@@ -35,6 +35,8 @@ const ROLL_AWAY_S: f64 = 10.0;
 /// Rest [s] before a new campaign file comes into force: a model that is heeled for its release is
 /// held no longer than that without a movement.
 const RELOAD_REST_S: f64 = 1.0;
+/// A recording that a full disk has stopped, or prevented, is not followed by another before [s].
+const BEGIN_AGAIN_S: f64 = 5.0;
 /// Rest [s] before one recording gives way to the next for its length alone.
 const ROTATE_REST_S: f64 = 30.0;
 
@@ -50,8 +52,8 @@ pub(super) enum Ended {
     Paused(String),
     /// It is wanted again.
     Resumed,
-    /// A port's thread has died, which a new start may mend.
-    Broken,
+    /// The disk has room again.
+    RoomAgain,
 }
 
 /// A campaign file that was read again.
@@ -163,7 +165,7 @@ impl UnderWay<'_> {
             time_s: monotonic_ns as f64 / 1e9,
             monotonic_ns,
             realtime_ns: u64::try_from(WallClock::unix_ns()).unwrap_or_default(),
-            tai_offset_s: 0,
+            tai_offset_s: WallClock::tai_offset_s(),
         }));
     }
 
@@ -186,10 +188,6 @@ impl UnderWay<'_> {
                 Event::Link { device, link } => self.link(device, &link),
                 Event::Detached => {
                     self.state.n_attached -= 1;
-                    if self.state.ended.is_none() {
-                        tracing::error!("the thread of a port has died");
-                        self.end(Ended::Broken);
-                    }
                     if self.state.n_attached == 0 {
                         self.end_runs();
                     }
@@ -329,30 +327,38 @@ impl UnderWay<'_> {
         self.state.n_ticks += 1;
         self.keeper.tick(self.clock.real(now_ns));
         self.supervisor.alive(self.clock.real(now_ns));
-        let since_s = |at_ns: u64| now_ns.saturating_sub(at_ns) as f64 / 1e9;
-        let state = &mut self.state;
-        let roll_is_away = since_s(state.roll_ns) > ROLL_AWAY_S;
-        let rested_s = if roll_is_away { f64::INFINITY } else { since_s(state.moved_ns) };
-        let may_end = state.ended.is_none() && self.knows_earlier.load(Ordering::Acquire);
-        if may_end && state.wanted.is_some() {
-            if let Some(wanted) = state.wanted.take() {
-                self.end(wanted);
-            }
-        } else if may_end && rested_s >= RELOAD_REST_S && state.reload.is_some() {
-            if let Some(reload) = state.reload.take() {
-                self.end(Ended::Reloaded(reload));
-            }
-        } else if may_end
-            && rested_s >= ROTATE_REST_S
-            && since_s(state.began_ns) >= self.rotate_s
-            && !roll_is_away
-            // On a full disk no other could begin.
-            && !self.keeper.progress().stopped
-            && self.keeper.records()
-        {
-            self.end(Ended::Rotated);
+        if let Some(ended) = self.due(now_ns) {
+            self.end(ended);
         }
         self.renew_status();
+    }
+
+    /// The end that is due, if any.
+    fn due(&mut self, now_ns: u64) -> Option<Ended> {
+        let since_s = |at_ns: u64| now_ns.saturating_sub(at_ns) as f64 / 1e9;
+        let state = &mut self.state;
+        if state.ended.is_some() || !self.knows_earlier.load(Ordering::Acquire) {
+            return None;
+        }
+        if let Some(wanted) = state.wanted.take() {
+            return Some(wanted);
+        }
+        let roll_is_away = since_s(state.roll_ns) > ROLL_AWAY_S;
+        let rested_s = if roll_is_away { f64::INFINITY } else { since_s(state.moved_ns) };
+        if rested_s < RELOAD_REST_S {
+            return None;
+        }
+        if let Some(reload) = state.reload.take() {
+            return Some(Ended::Reloaded(reload));
+        }
+        let age_s = since_s(state.began_ns);
+        if age_s >= BEGIN_AGAIN_S && self.keeper.may_begin_again() {
+            return Some(Ended::RoomAgain);
+        }
+        let is_long = age_s >= self.rotate_s && rested_s >= ROTATE_REST_S && !roll_is_away;
+        // On a full disk no other could begin.
+        let is_recorded = self.keeper.records() && !self.keeper.progress().stopped;
+        (is_long && is_recorded).then_some(Ended::Rotated)
     }
 
     fn renew_status(&mut self) {

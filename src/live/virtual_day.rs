@@ -83,7 +83,7 @@ pub fn virtual_day(
     let first = conditions.first().map_or("", |(name, _)| name.as_str());
     write_campaign(scenario, folder, first)?;
     let devices = campaign::read(folder)?.live.devices;
-    let clock = Arc::new(WallClock::start_at_speed(speed));
+    let clock = Arc::new(WallClock::start_with_brakes(speed));
     let tank = VirtualTank::plug_in(scenario.clone(), seed, &devices, &clock)?;
     let board = Board::default();
     let (sender, receiver) = orders();

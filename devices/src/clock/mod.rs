@@ -1,5 +1,6 @@
 //! Time as an argument: the host's clock, and the clocks inside the instruments seen from it.
 
+mod brake;
 mod corridor;
 mod counter;
 mod envelope;
@@ -8,6 +9,11 @@ mod paced;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
+use rustix::time::{ClockId, DynamicClockId, clock_gettime, clock_gettime_dynamic};
+
+use brake::Brakes;
+
+pub use brake::Brake;
 pub use counter::{Counter, CounterStep};
 pub use envelope::{ClockLine, Envelope};
 pub use paced::Paced;
@@ -22,6 +28,11 @@ pub trait Clock: Send + Sync {
 
     /// How long the thread has to sleep, so that `duration_ns` pass on this clock.
     fn real(&self, duration_ns: u64) -> Duration;
+
+    /// A hand on a clock that can be held back; none where time passes by itself.
+    fn brake(&self) -> Option<Brake> {
+        None
+    }
 }
 
 /// The machine's monotonic clock, which may run faster than real time for a simulated tank.
@@ -30,6 +41,8 @@ pub struct WallClock {
     start: Instant,
     start_unix_ns: u128,
     speed: f64,
+    /// Where a simulation waits for those who are late.
+    brakes: Option<Brakes>,
 }
 
 impl WallClock {
@@ -45,7 +58,16 @@ impl WallClock {
     #[expect(clippy::disallowed_methods, reason = "the one place where time enters the program")]
     pub fn start_at_speed(speed: f64) -> Self {
         assert!(speed > 0.0, "a clock at speed {speed}");
-        Self { start: Instant::now(), start_unix_ns: Self::unix_ns(), speed }
+        let (start, start_unix_ns) = (Instant::now(), Self::unix_ns());
+        Self { start, start_unix_ns, speed, brakes: None }
+    }
+
+    /// The same for a simulation on a machine that may be busy: [`Clock::brake`] holds it back.
+    ///
+    /// # Panics
+    /// When `speed` is not positive.
+    pub fn start_with_brakes(speed: f64) -> Self {
+        Self { brakes: Some(Brakes::default()), ..Self::start_at_speed(speed) }
     }
 
     /// What the machine's other clock says, which may step: time since 1970 [ns].
@@ -53,6 +75,15 @@ impl WallClock {
     pub fn unix_ns() -> u128 {
         let since_epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
         since_epoch.map_or(0, |passed| passed.as_nanos())
+    }
+
+    /// Atomic time less UTC, as the system knows it [s]; 0 where nobody has told the system.
+    pub fn tai_offset_s() -> i32 {
+        let Ok(atomic) = clock_gettime_dynamic(DynamicClockId::Tai) else { return 0 };
+        let utc = clock_gettime(ClockId::Realtime);
+        // The two are read one after the other, so that a second may begin between them.
+        let offset_ns = (atomic.tv_sec - utc.tv_sec) * 1_000_000_000 + atomic.tv_nsec - utc.tv_nsec;
+        i32::try_from((offset_ns + 500_000_000).div_euclid(1_000_000_000)).unwrap_or_default()
     }
 
     /// Time zero of this clock since 1970 [ns]; never differenced, as NTP may step that clock.
@@ -63,11 +94,16 @@ impl WallClock {
 
 impl Clock for WallClock {
     fn now_ns(&self) -> u64 {
-        (self.start.elapsed().as_nanos() as f64 * self.speed) as u64
+        let free_ns = (self.start.elapsed().as_nanos() as f64 * self.speed) as u64;
+        self.brakes.as_ref().map_or(free_ns, |brakes| brakes.held(free_ns))
     }
 
     fn real(&self, duration_ns: u64) -> Duration {
         Duration::from_nanos((duration_ns as f64 / self.speed) as u64)
+    }
+
+    fn brake(&self) -> Option<Brake> {
+        self.brakes.as_ref().map(Brakes::brake)
     }
 }
 

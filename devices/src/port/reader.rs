@@ -1,6 +1,8 @@
 //! One thread per port: opens, stamps, converses, notices loss, and comes back.
 
+use std::any::Any;
 use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -147,7 +149,7 @@ impl LinkReader {
             if link.options.realtime {
                 is_realtime.store(become_realtime(), Ordering::Release);
             }
-            link.run();
+            link.serve();
         })?;
         Ok(Self { events, stop, realtime, thread: Some(thread) })
     }
@@ -155,11 +157,6 @@ impl LinkReader {
     /// The next event, waited for at most so long.
     pub fn next(&self, wait: Duration) -> Option<LinkEvent> {
         self.events.recv_timeout(wait).ok()
-    }
-
-    /// Whether the port's thread has ended, which it does by itself only when it panics.
-    pub fn is_over(&self) -> bool {
-        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
     /// Closes the port and gives the events that nobody has taken.
@@ -171,7 +168,7 @@ impl LinkReader {
     fn end(&mut self) {
         self.stop.store(true, Ordering::Release);
         if let Some(thread) = self.thread.take() {
-            // A panic of the thread was already told by its own message.
+            // What panics in the thread is caught there.
             drop(thread.join());
         }
     }
@@ -219,6 +216,15 @@ struct Link {
 }
 
 impl Link {
+    /// Runs until it is stopped; after a panic, which is told as a loss of the link, anew.
+    fn serve(&mut self) {
+        // The next opening starts the session anew, and nothing else outlives a conversation.
+        while let Err(panic) = catch_unwind(AssertUnwindSafe(|| self.run())) {
+            self.lost(format!("reading it failed: {}", words_of(panic.as_ref())));
+            self.rest();
+        }
+    }
+
     fn run(&mut self) {
         let mut told: Option<PortFault> = None;
         while !self.stopped() {
@@ -319,6 +325,12 @@ impl Link {
         let at_ns = self.clock.now_ns();
         self.outlet.send(LinkEvent::Lost { at_ns, seen });
     }
+}
+
+/// What a panic said.
+fn words_of(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("a panic without words")
 }
 
 fn seen_at(path: &Path) -> String {
