@@ -70,14 +70,16 @@ impl UnderWay<'_> {
             Ok(identified) => {
                 let latency = self.clock.real(at_ns.saturating_sub(decided_ns));
                 let latency_s = latency.as_secs_f64();
-                tracing::info!(run = identified.id, latency_s, "{}", identified.summary);
+                let known_after_s = decided_ns as f64 / 1e9 - found.end_s;
+                let run = &identified.id;
+                tracing::info!(run, latency_s, known_after_s, "{}", identified.summary);
                 self.keeper.push(Record::Result(RunResult {
                     time_s,
                     run: name_of(&found),
                     schema: IDENTIFICATION_NAME.to_owned(),
                     document: identified.document,
                 }));
-                self.board.change(|status| status.runs.reported(latency_s));
+                self.board.change(|status| status.runs.reported(latency_s, known_after_s));
             }
             Err(reason) => {
                 let (start_s, end_s) = (found.start_s, found.end_s);
