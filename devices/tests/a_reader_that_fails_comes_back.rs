@@ -63,5 +63,4 @@ fn a_driver_that_panics_is_told_as_a_lost_link_and_read_again() {
     assert_eq!(lost, Some("reading it failed: one line too many"), "{events:?}");
     let n_read = events.iter().filter(|event| matches!(event, LinkEvent::Received { .. })).count();
     assert!(n_read >= 10, "what came before was kept: {events:?}");
-    assert!(reader.close().len() < 100);
 }

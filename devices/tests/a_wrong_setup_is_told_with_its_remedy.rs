@@ -159,7 +159,8 @@ fn another_instrument_on_the_port_is_told() {
     bench.listen_until(is_told);
     let told = told(bench.trouble().expect("it was told"));
     assert!(names_device_and_port(&told), "{told}");
-    let seen = "answers \"4017\", expected is \"4018\"\nhint: another instrument hangs on this port";
+    let seen =
+        "answers \"4017\", expected is \"4018\"\nhint: another instrument hangs on this port";
     assert!(told.contains(seen), "{told}");
 }
 

@@ -32,7 +32,10 @@ pub fn report_latency(folder: &Path) -> Result<Vec<Figure>, LiveError> {
     let in_all_s: Vec<f64> =
         runs.latencies_s.iter().zip(&known_after_s).map(|(a, b)| a + b).collect();
     Ok([
-        ("from the sample by which a run's end is known to its report on the disk", runs.latencies_s),
+        (
+            "from the sample by which a run's end is known to its report on the disk",
+            runs.latencies_s,
+        ),
         ("from the last sample of a run to the one by which its end is known", known_after_s),
         ("from the last sample of a run to its report on the disk", in_all_s),
     ]

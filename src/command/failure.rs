@@ -213,9 +213,7 @@ impl Failure {
                  --page 127.0.0.1:8440"
                     .to_owned(),
             ),
-            Self::Page { .. } => {
-                Some("its log names the address: \"serving the page\"".to_owned())
-            }
+            Self::Page { .. } => Some("its log names the address: \"serving the page\"".to_owned()),
             Self::Replay { source } => source.hint(),
             Self::Import { source } => source.hint(),
             Self::File { .. } => {

@@ -62,7 +62,10 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     let options = DaemonOptions {
         folder: arguments.campaign.clone(),
         rotate_s: MINUTE_S * arguments.rotate,
-        listen: Some(Listen { address: arguments.listen, token: token(arguments.token_file.as_deref())? }),
+        listen: Some(Listen {
+            address: arguments.listen,
+            token: token(arguments.token_file.as_deref())?,
+        }),
     };
     let clock = Arc::new(WallClock::start_at_speed(arguments.clock_speed));
     let results = live::run(&options, &clock, orders(), &Board::default())?;

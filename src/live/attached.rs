@@ -7,9 +7,7 @@ use devices::channel::{Counted, Counts, zero_from_readings};
 use devices::port::LinkEvent;
 use devices::setup::DeviceConfig;
 use devices::{Attachment, InstrumentEvent, Interpreter, Measured, Quality, Quantity, Sample};
-use replay::{
-    AttachedDevice, Calibration, Gap, LinkLosses, Loss, LossKind, Raw, Record,
-};
+use replay::{AttachedDevice, Calibration, Gap, LinkLosses, Loss, LossKind, Raw, Record};
 
 use super::error::LiveError;
 use crate::page::status::{ChannelStatus, DeviceStatus, RecentRaw};

@@ -86,9 +86,7 @@ impl LiveError {
                 Some("check that the folder can be written and that the disk has room".to_owned())
             }
             Self::Serve { source } => Some(source.hint().to_owned()),
-            Self::Campaign { .. }
-            | Self::Attachment { .. }
-            | Self::System { .. } => None,
+            Self::Campaign { .. } | Self::Attachment { .. } | Self::System { .. } => None,
         }
     }
 }

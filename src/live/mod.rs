@@ -13,7 +13,6 @@
 //! other; every queue between threads is bounded, and what finds no place is counted.
 
 mod attached;
-mod attaching;
 mod daemon;
 mod diagnosing;
 mod error;

@@ -4,17 +4,15 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::Scope;
 use std::time::Duration;
 
 use devices::clock::{Clock, WallClock};
-use devices::port::LinkEvent;
-use devices::{Instrument, Quantity, Sample};
+use devices::port::{LinkEvent, LinkThread};
+use devices::{AttachedInstrument, Instrument, Quantity, Sample};
 use replay::{CampaignFile, ClockReading, LinkLosses, Note, Record};
 use tokio::sync::mpsc::{Receiver, Sender};
 
 use super::attached::{Attached, Taken};
-use super::attaching::{Detach, forward};
 use super::error::{LiveError, no_devices};
 use super::event::Event;
 use super::keeping::Keeper;
@@ -72,7 +70,8 @@ pub(super) struct UnderWay<'a> {
     pub(super) keeper: Keeper,
     /// Where samples go, until the recording has ended.
     pub(super) runs: Option<LiveRuns<'a>>,
-    pub(super) detach: Detach,
+    /// Told to whoever works for this recording when it ends.
+    pub(super) is_ending: &'a AtomicBool,
     /// Age [s] at which the recording gives way to the next when the model is at rest.
     pub(super) rotate_s: f64,
     /// Whether it is known what earlier recordings taught; before, no other can begin.
@@ -84,7 +83,8 @@ pub(super) struct UnderWay<'a> {
 #[derive(Default)]
 pub(super) struct State {
     pub(super) attached: Vec<Attached>,
-    pub(super) n_attached: usize,
+    /// The threads of the ports, until the recording ends.
+    pub(super) ports: Vec<LinkThread>,
     /// How the water calms between runs.
     pub(super) settling: Option<Settling>,
     /// Ticks of the clock so far.
@@ -110,12 +110,7 @@ pub(super) struct State {
 
 impl UnderWay<'_> {
     /// Attaches every device and records what is known of them.
-    pub(super) fn attach<'s>(
-        &mut self,
-        scope: &'s Scope<'s, '_>,
-        events: &Sender<Event>,
-        text: String,
-    ) -> Result<(), LiveError> {
+    pub(super) fn attach(&mut self, events: &Sender<Event>, text: String) -> Result<(), LiveError> {
         let now_ns = self.clock.now_ns();
         let time_s = now_ns as f64 / 1e9;
         self.state.began_ns = now_ns;
@@ -125,7 +120,11 @@ impl UnderWay<'_> {
         let live = &self.campaign.live;
         for (device, config) in live.devices.iter().enumerate() {
             let clock = Arc::clone(self.clock) as Arc<dyn Clock>;
-            let (reader, interpreter, latency_s) = Instrument::start(config, clock)?.into_parts();
+            let events = events.clone();
+            let outlet = move |link| events.try_send(Event::Link { device, link }).is_ok();
+            let AttachedInstrument { thread, interpreter, latency_s } =
+                Instrument::attach(config, clock, Box::new(outlet))?;
+            self.state.ports.push(thread);
             let of_name = live.setups.iter().find(|setup| setup.name == config.name);
             let profile = of_name.map_or("", |setup| setup.profile.as_str());
             let records = Attached::introduction(config, profile, latency_s, time_s)?;
@@ -133,8 +132,6 @@ impl UnderWay<'_> {
                 self.keeper.push(record);
             }
             self.state.attached.push(Attached::new(config, interpreter));
-            forward(scope, device, reader, events.clone(), self.detach.clone());
-            self.state.n_attached += 1;
         }
         self.supervisor.ready("recording");
         let (campaign, state) = (self.campaign, &self.state);
@@ -186,12 +183,6 @@ impl UnderWay<'_> {
             self.state.n_events += 1;
             match event {
                 Event::Link { device, link } => self.link(device, &link),
-                Event::Detached => {
-                    self.state.n_attached -= 1;
-                    if self.state.n_attached == 0 {
-                        self.end_runs();
-                    }
-                }
                 Event::Reported(reported) => self.reported(*reported),
                 Event::AllReported => self.state.all_reported = true,
                 Event::Order(Order::Terminate) => self.end(Ended::Terminated),
@@ -206,6 +197,10 @@ impl UnderWay<'_> {
                     self.state.wanted = (!self.keeper.records()).then_some(Ended::Resumed);
                 }
                 Event::Tick => self.tick(),
+            }
+            // The ports were closed when the end began, so that nothing comes behind these.
+            if self.state.ended.is_some() && events.is_empty() {
+                self.end_runs();
             }
             if self.state.all_reported
                 && let Some(ended) = self.state.ended.take()
@@ -269,7 +264,7 @@ impl UnderWay<'_> {
         self.take_found(at_ns);
     }
 
-    /// Detaches the devices, unless that is under way; the rest follows from their last events.
+    /// Closes the ports, unless they are; the rest follows when their last events were taken.
     fn end(&mut self, ended: Ended) {
         if matches!(ended, Ended::Terminated) {
             self.supervisor.stopping();
@@ -277,10 +272,12 @@ impl UnderWay<'_> {
         if self.state.ended.is_none() || matches!(ended, Ended::Terminated) {
             self.state.ended = Some(ended);
         }
-        self.detach.now();
+        self.is_ending.store(true, Ordering::Release);
+        self.state.ports.iter().for_each(LinkThread::stop);
+        self.state.ports.clear();
     }
 
-    /// The last event of the last device was taken.
+    /// The last event of the last port was taken.
     fn end_runs(&mut self) {
         // Without a recording nothing has ended; the telling end notes that this one is gone.
         let Some(runs) = self.runs.take().filter(|_| self.keeper.records()) else { return };
