@@ -1,19 +1,18 @@
 //! A daemon that is started on a full disk shows what comes, tells of the disk, and records when it
 //! can.
-//!
-//! The disk is a tmpfs in a mount namespace of its own, which vanishes with the process that uses
-//! it.
 
 use std::env;
 use std::fs;
 use std::path::PathBuf;
-use std::process::Command;
 
 use super::http;
 use super::live_tank::{Daemon, LiveTank};
 
-/// Names the folder with the small disk to the process that fills it.
-const FOLDER: &str = "ROLLTANK_FULL_DISK";
+#[path = "../replay/tests/small_disk.rs"]
+mod small_disk;
+
+use small_disk::{FOLDER, told_on_a_disk_of};
+
 /// What the disk holds [bytes]: the recorder leaves 64 MiB to others, and begins again at 128 MiB.
 const DISK_BYTES: u64 = 192 << 20;
 const BALLAST_BYTES: usize = 160 << 20;
@@ -58,35 +57,11 @@ fn child_on_the_full_disk() {
     println!("\nfull, then recorded");
 }
 
-/// Runs the child on a tmpfs; whether this system lets us have one.
-fn on_a_full_disk(namespace: &[&str]) -> bool {
-    let folder = tempfile::tempdir().expect("a folder");
-    let child = concat!(module_path!(), "::child_on_the_full_disk");
-    let (_, child) = child.split_once("::").expect("the crate comes first");
-    let script = "mount -t tmpfs -o size=$0 tmpfs $1 && echo mounted && shift && exec \"$@\"";
-    let output = Command::new("unshare")
-        .args(namespace)
-        .args(["sh", "-c", script, &DISK_BYTES.to_string()])
-        .arg(folder.path())
-        .arg(env::current_exe().expect("this program has a path"))
-        .args(["--exact", child, "--ignored", "--nocapture"])
-        .env(FOLDER, folder.path())
-        .env("TMPDIR", folder.path())
-        .output();
-    let Ok(output) = output else { return false };
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    if !text.starts_with("mounted") {
-        return false;
-    }
-    assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
-    assert!(text.contains("full, then recorded"), "{text}");
-    true
-}
-
 #[test]
 fn a_daemon_started_on_a_full_disk_shows_and_tells_and_records_once_there_is_room() {
-    let namespaces: [&[&str]; 2] = [&["--mount"], &["--user", "--map-root-user", "--mount"]];
-    if !namespaces.into_iter().any(on_a_full_disk) {
-        println!("skipped: no tmpfs may be mounted here");
+    let child = concat!(module_path!(), "::child_on_the_full_disk");
+    match told_on_a_disk_of(DISK_BYTES, child) {
+        Some(told) => assert!(told.contains("full, then recorded"), "{told}"),
+        None => println!("skipped: no tmpfs may be mounted here"),
     }
 }

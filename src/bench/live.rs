@@ -6,8 +6,8 @@ use super::speed::Figure;
 use crate::live::{self, LiveError};
 use crate::tank::{Action, Scenario};
 
-/// Seconds of the tank in one second; what the computer takes is told in the world's time, what a run
-/// takes to be known for ended in the tank's.
+/// Seconds of the tank in one second; what the computer takes is told in the world's time, what it
+/// takes to know that a run has ended in the tank's.
 const SPEED: f64 = 10.0;
 
 /// Latency from the sample by which a run is known to have ended to its page on the disk, how long

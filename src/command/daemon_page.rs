@@ -36,15 +36,16 @@ impl DaemonPage {
     /// The raw readings of a channel in the last seconds.
     pub(super) fn recent(&self, quantity: Quantity) -> Result<RecentRaw, Failure> {
         let token = token(self.token_file.as_deref())?;
-        let text = self.status(token.as_deref()).map_err(|source| Failure::Page { source })?;
-        let status: Value = serde_json::from_str(&text).unwrap_or_default();
+        let failed = |source| Failure::Page { source };
+        let text = self.status(token.as_deref()).map_err(failed)?;
+        let status: Value = serde_json::from_str(&text).map_err(|error| failed(error.into()))?;
         let devices = status["devices"].as_array().into_iter().flatten();
         let mut channels = devices.flat_map(|of| of["channels"].as_array().into_iter().flatten());
         let channel = channels.find(|channel| channel["quantity"] == quantity.name());
         let recent = channel.map(|channel| channel["recent"].clone());
         recent.and_then(|recent| serde_json::from_value(recent).ok()).ok_or_else(|| {
-            let seen = format!("it brings too few readings of the {}", quantity.name());
-            Failure::Page { source: io::Error::other(seen) }
+            let seen = format!("it has too few readings of the {} yet", quantity.name());
+            failed(io::Error::other(seen))
         })
     }
 

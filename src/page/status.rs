@@ -143,7 +143,7 @@ pub struct RunsStatus {
 const LATENCIES_KEPT: usize = 1000;
 
 impl RunsStatus {
-    /// One more report, so long after the sample by which the end of its run was known, which came so
+    /// One more report, so long after the sample by which the end of its run was known, and that so
     /// long after the last of the run.
     pub fn reported(&mut self, latency_s: f64, known_after_s: f64) {
         self.n_identified += 1;

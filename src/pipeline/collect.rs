@@ -35,7 +35,8 @@ impl<'c> Collector<'c> {
         self.results.runs.len()
     }
 
-    /// Keeps a run of a recording with what instruments counted in it; one that could not be identified becomes a rejection.
+    /// Keeps a run of a recording with what instruments counted in it; one that could not be
+    /// identified becomes a rejection.
     pub(super) fn keep(
         &mut self,
         index: usize,

@@ -15,8 +15,8 @@ use crate::realtime::become_realtime;
 
 /// Longest sleep of the thread [ns]; a line is at most so late.
 const TURN_NS: i64 = 500_000;
-/// A clock that can be held back goes at most so far from turn to turn, and beyond bytes that nobody
-/// has read yet [ns].
+/// A clock that can be held back goes at most so far from turn to turn [ns], and beyond bytes that
+/// nobody has read yet.
 const AHEAD_MAX_NS: u64 = 100_000_000;
 
 /// The system gives no pseudo-terminal.

@@ -28,8 +28,8 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
             }
         })
         .collect();
-    let caption = "Counted by the drivers from start to end of the run. What is over range is among \
-                   the samples, but not used; what was repeated or damaged is not among them.";
+    let caption = "Counted by the drivers from start to end of the run. What is over range is \
+                   among the samples, but not used; what was repeated or damaged is not.";
     let is_whole = counts.iter().all(|(_, counts)| counts.is_whole());
     (!rows.is_empty()).then(|| {
         section(
