@@ -14,10 +14,10 @@ fn entered(tank: &LiveTank, arguments: &[&str], lines: &str) -> (Option<i32>, St
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
-        .unwrap();
+        .expect("the program was built");
     // Who has given up does not read on.
-    std::io::Write::write_all(&mut child.stdin.take().unwrap(), lines.as_bytes()).ok();
-    let ended = child.wait_with_output().unwrap();
+    std::io::Write::write_all(&mut child.stdin.take().expect("it is piped"), lines.as_bytes()).ok();
+    let ended = child.wait_with_output().expect("it is our child");
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     (ended.status.code(), text(&ended.stdout), text(&ended.stderr))
 }

@@ -1,56 +1,40 @@
-//! What holds a simulated clock back, so that nobody on a busy machine is late by it.
+//! What holds a simulated clock back, so that nobody on a busy machine falls behind it.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The brakes of one clock.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Brakes {
+/// The brake of a clock; its clones are one brake.
+#[derive(Debug, Clone)]
+pub(super) struct Brake {
     state: Arc<Mutex<State>>,
 }
 
-#[derive(Debug, Default)]
+#[expect(clippy::struct_field_names, reason = "the unit stands last in every name")]
+#[derive(Debug)]
 struct State {
-    /// How far each lets the clock go [ns].
-    limits_ns: Vec<u64>,
-    /// What the clock was held back in all [ns].
+    /// How far the clock may go [ns].
+    limit_ns: u64,
+    /// What it was held back in all [ns].
     held_ns: u64,
     last_ns: u64,
 }
 
-/// One hand on a clock; the clock is free of it when it is dropped.
-#[derive(Debug)]
-pub struct Brake {
-    brakes: Brakes,
-    index: usize,
-}
-
 impl Brake {
-    /// Lets the clock go so far [ns] and no further; a clock beyond that stands still.
-    pub fn at_most(&self, limit_ns: u64) {
-        self.brakes.lock().limits_ns[self.index] = limit_ns;
-    }
-}
-
-impl Drop for Brake {
-    fn drop(&mut self) {
-        self.at_most(u64::MAX);
-    }
-}
-
-impl Brakes {
-    /// A further hand, which does not hold the clock yet.
-    pub(super) fn brake(&self) -> Brake {
-        let mut state = self.lock();
-        state.limits_ns.push(u64::MAX);
-        Brake { brakes: self.clone(), index: state.limits_ns.len() - 1 }
+    /// A brake that does not hold yet.
+    pub(super) fn open() -> Self {
+        let state = State { limit_ns: u64::MAX, held_ns: 0, last_ns: 0 };
+        Self { state: Arc::new(Mutex::new(state)) }
     }
 
-    /// What a clock shows that would show `free_ns` without brakes.
+    /// Lets the clock go so far [ns] and no further.
+    pub(super) fn at_most(&self, limit_ns: u64) {
+        self.lock().limit_ns = limit_ns;
+    }
+
+    /// What a clock shows that would show `free_ns` without its brake.
     pub(super) fn held(&self, free_ns: u64) -> u64 {
         let mut state = self.lock();
-        let limit_ns = state.limits_ns.iter().copied().min().unwrap_or(u64::MAX);
         let now_ns = free_ns.saturating_sub(state.held_ns);
-        let shown_ns = now_ns.min(limit_ns).max(state.last_ns);
+        let shown_ns = now_ns.min(state.limit_ns).max(state.last_ns);
         state.held_ns += now_ns.saturating_sub(shown_ns);
         state.last_ns = shown_ns;
         shown_ns
@@ -68,19 +52,16 @@ mod tests {
 
     #[test]
     fn a_clock_stands_at_its_brake_and_goes_on_from_there() {
-        let brakes = Brakes::default();
-        let (first, second) = (brakes.brake(), brakes.brake());
-        assert_eq!(brakes.held(100), 100);
-        first.at_most(150);
-        second.at_most(120);
-        assert_eq!(brakes.held(200), 120);
-        second.at_most(1000);
-        assert_eq!(brakes.held(220), 140);
-        assert_eq!(brakes.held(400), 150);
+        let brake = Brake::open();
+        assert_eq!(brake.held(100), 100);
+        brake.at_most(120);
+        assert_eq!(brake.held(200), 120);
+        brake.at_most(1000);
+        assert_eq!(brake.held(220), 140);
         // It never goes back, not even for a brake that comes late.
-        first.at_most(10);
-        assert_eq!(brakes.held(500), 150);
-        drop((first, second));
-        assert_eq!(brakes.held(600), 250);
+        brake.at_most(10);
+        assert_eq!(brake.held(500), 140);
+        brake.at_most(u64::MAX);
+        assert_eq!(brake.held(600), 240);
     }
 }

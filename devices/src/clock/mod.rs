@@ -11,9 +11,8 @@ use std::time::{Duration, Instant, SystemTime};
 
 use rustix::time::{ClockId, DynamicClockId, clock_gettime, clock_gettime_dynamic};
 
-use brake::Brakes;
+use brake::Brake;
 
-pub use brake::Brake;
 pub use counter::{Counter, CounterStep};
 pub use envelope::{ClockLine, Envelope};
 pub use paced::Paced;
@@ -28,11 +27,6 @@ pub trait Clock: Send + Sync {
 
     /// How long the thread has to sleep, so that `duration_ns` pass on this clock.
     fn real(&self, duration_ns: u64) -> Duration;
-
-    /// A hand on a clock that can be held back; none where time passes by itself.
-    fn brake(&self) -> Option<Brake> {
-        None
-    }
 }
 
 /// The machine's monotonic clock, which may run faster than real time for a simulated tank.
@@ -41,8 +35,8 @@ pub struct WallClock {
     start: Instant,
     start_unix_ns: u128,
     speed: f64,
-    /// Where a simulation waits for those who are late.
-    brakes: Option<Brakes>,
+    /// Of a simulation, which can wait for those who are behind.
+    brake: Option<Brake>,
 }
 
 impl WallClock {
@@ -59,15 +53,22 @@ impl WallClock {
     pub fn start_at_speed(speed: f64) -> Self {
         assert!(speed > 0.0, "a clock at speed {speed}");
         let (start, start_unix_ns) = (Instant::now(), Self::unix_ns());
-        Self { start, start_unix_ns, speed, brakes: None }
+        Self { start, start_unix_ns, speed, brake: None }
     }
 
-    /// The same for a simulation on a machine that may be busy: [`Clock::brake`] holds it back.
+    /// The same for a simulation on a machine that may be busy: [`WallClock::at_most`] holds it.
     ///
     /// # Panics
     /// When `speed` is not positive.
-    pub fn start_with_brakes(speed: f64) -> Self {
-        Self { brakes: Some(Brakes::default()), ..Self::start_at_speed(speed) }
+    pub fn start_with_brake(speed: f64) -> Self {
+        Self { brake: Some(Brake::open()), ..Self::start_at_speed(speed) }
+    }
+
+    /// Lets a clock with a brake go so far [ns]; there it stands until it may go on.
+    pub fn at_most(&self, limit_ns: u64) {
+        if let Some(brake) = &self.brake {
+            brake.at_most(limit_ns);
+        }
     }
 
     /// What the machine's other clock says, which may step: time since 1970 [ns].
@@ -95,15 +96,11 @@ impl WallClock {
 impl Clock for WallClock {
     fn now_ns(&self) -> u64 {
         let free_ns = (self.start.elapsed().as_nanos() as f64 * self.speed) as u64;
-        self.brakes.as_ref().map_or(free_ns, |brakes| brakes.held(free_ns))
+        self.brake.as_ref().map_or(free_ns, |brake| brake.held(free_ns))
     }
 
     fn real(&self, duration_ns: u64) -> Duration {
         Duration::from_nanos((duration_ns as f64 / self.speed) as u64)
-    }
-
-    fn brake(&self) -> Option<Brake> {
-        self.brakes.as_ref().map(Brakes::brake)
     }
 }
 

@@ -77,12 +77,6 @@ impl Cable {
         }
     }
 
-    /// Whether everything that was sent was read, or there is nobody to read it.
-    pub(super) fn is_read(&mut self) -> bool {
-        let is_taken = || rustix::io::ioctl_fionread(&self.slave).is_ok_and(|n_bytes| n_bytes == 0);
-        self.waiting.is_empty() && is_taken() || !self.openings.any()
-    }
-
     /// Passes on what the terminal takes of what was sent.
     pub(super) fn pass_on(&mut self) {
         while !self.waiting.is_empty() {

@@ -10,14 +10,11 @@ use std::time::Duration;
 
 use super::cable::Cable;
 use super::{Emulator, Fault, Faults};
-use crate::clock::{Brake, Clock, NS_PER_S};
+use crate::clock::{Clock, NS_PER_S};
 use crate::realtime::become_realtime;
 
 /// Longest sleep of the thread [ns]; a line is at most so late.
 const TURN_NS: i64 = 500_000;
-/// A clock that can be held back goes at most so far from turn to turn [ns], and beyond bytes that
-/// nobody has read yet.
-const AHEAD_MAX_NS: u64 = 100_000_000;
 
 /// The system gives no pseudo-terminal.
 #[derive(Debug, thiserror::Error)]
@@ -69,7 +66,6 @@ impl EmulatedPort {
             byte_ns,
             line_free_ns: 0,
             on_line: VecDeque::new(),
-            brake: clock.brake(),
             clock,
         };
         let thread = thread::Builder::new().name("emulator".to_owned());
@@ -122,8 +118,6 @@ struct Bench {
     byte_ns: u64,
     line_free_ns: u64,
     on_line: VecDeque<(u64, Vec<u8>)>,
-    /// Holds back a simulation's clock when the machine is too busy for it.
-    brake: Option<Brake>,
     clock: Arc<dyn Clock>,
 }
 
@@ -163,11 +157,6 @@ impl Bench {
     fn turn(&mut self) {
         let now_ns = self.clock.now_ns();
         let now_s = now_ns as f64 / NS_PER_S;
-        if let Some(brake) = &self.brake
-            && self.cable.as_mut().is_none_or(Cable::is_read)
-        {
-            brake.at_most(now_ns + AHEAD_MAX_NS);
-        }
         if std::mem::take(&mut self.faults.restart) {
             self.emulator.restart(now_s);
         }

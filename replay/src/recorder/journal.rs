@@ -80,10 +80,11 @@ impl Journal {
 
     /// Asks for the disk to keep what was handed to the system, and tells of an earlier failure.
     pub(crate) fn ask_to_keep(&mut self) -> io::Result<()> {
-        if self.syncer.is_none() {
-            self.syncer = Some(Syncer::start(&self.file)?);
-        }
-        let syncer = self.syncer.as_ref().expect("it was started just above");
+        let syncer = match self.syncer.take() {
+            Some(syncer) => syncer,
+            None => Syncer::start(&self.file)?,
+        };
+        let syncer = self.syncer.insert(syncer);
         syncer.ask();
         syncer.failure().map_or(Ok(()), Err)
     }
