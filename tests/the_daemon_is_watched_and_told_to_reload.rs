@@ -80,7 +80,9 @@ fn a_new_campaign_file_comes_into_force_at_rest_and_a_wrong_one_never() {
     tank.edit("condition = \"bare hull\"", "condition = \"bilge keels\"");
     daemon.signal("-HUP");
     daemon.wait_for("linked", 4);
-    daemon.wait_for("latency_s=", 2);
+    // On a busy machine more than one run may have come under the old file.
+    let n_before = daemon.said().matches("latency_s=").count();
+    daemon.wait_for("latency_s=", n_before + 1);
     let (status, said) = daemon.terminate();
     assert_eq!(status.code(), Some(0), "{said}");
     assert!(said.contains("gm_m = 74 m is above the beam"), "{said}");
