@@ -109,9 +109,16 @@ fn samples_that_fail_within_a_run_are_masked_and_counted() {
     let roll = stops[0].counts.iter().find(|counts| counts.channel == "roll").expect("roll");
     assert!(roll.lost >= 5 && roll.repeated == 3 && roll.damaged >= 1, "{roll:?}");
     assert!(roll.samples > 1000, "{roll:?}");
-    let live: serde_json::Value =
-        serde_json::from_str(&tank.text("results/identification.json")).expect("JSON");
+    let live = tank.text("results/identification.json");
+    let replayed = rolltank(tank.path(), &["identify", ".", "--json"]);
+    assert_eq!(replayed.out, live, "{said}");
+    let live: serde_json::Value = serde_json::from_str(&live).expect("JSON");
     let run = &live["runs"][0];
+    let counts = serde_json::to_value(&stops[0].counts).expect("JSON");
+    assert_eq!(run["counts"], counts, "the results tell what the recording does");
+    let page = tank.text(&format!("results/run-{}.html", run["id"].as_str().expect("an id")));
+    let row = format!("<td>roll</td><td class=\"number\">{}</td>", roll.samples);
+    assert!(page.contains(&row) && page.contains("What the instruments brought"), "{row}");
     assert!(run["end_s"].as_f64() > run["start_s"].as_f64().map(|start_s| start_s + 10.0));
     let mean = run["b1_per_s"]["mean"].as_f64().expect("b1");
     assert!((mean - B1_PER_S).abs() < 0.1, "{run}");

@@ -69,7 +69,7 @@ const OWNERS: [(&str, &[&str]); 27] = [
     ("jiff", &["src/page"]),
     ("serialport", &["devices/src/port"]),
     ("thread_priority", &["devices/src/realtime"]),
-    ("rustix", &["devices/src/emulator", "replay/src/recorder/disk"]),
+    ("rustix", &["devices/src/clock", "devices/src/emulator", "replay/src/recorder/disk"]),
     ("crc", &["devices/src/driver"]),
     ("cobs", &["devices/src/driver"]),
 ];

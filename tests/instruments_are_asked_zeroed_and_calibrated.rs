@@ -5,6 +5,23 @@ use std::process::{Command, Stdio};
 use super::campaign_folder::rolltank;
 use super::live_tank::{CAMPAIGN, Daemon, LiveTank};
 
+/// Runs a command to whom somebody enters lines: its exit code and what it said on either stream.
+fn entered(tank: &LiveTank, arguments: &[&str], lines: &str) -> (Option<i32>, String, String) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_rolltank"))
+        .args(arguments)
+        .current_dir(tank.path())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program was built");
+    // Who has given up does not read on.
+    std::io::Write::write_all(&mut child.stdin.take().expect("it is piped"), lines.as_bytes()).ok();
+    let ended = child.wait_with_output().expect("it is our child");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (ended.status.code(), text(&ended.stdout), text(&ended.stderr))
+}
+
 #[test]
 fn devices_and_check_tell_who_answers_and_what_it_reads() {
     let tank = LiveTank::at_speed(1.0);
@@ -40,6 +57,16 @@ fn a_port_that_is_missing_busy_or_another_instruments_is_told_with_its_line_and_
     assert!(told.err.contains("is in use by another program\nhint: close"), "{}", told.err);
     let zero = rolltank(tank.path(), &["zero", ".", "--by", "A. Nilsson", "--seconds", "0.3"]);
     assert!(zero.err.contains("hint: stop `rolltank run`, or let it"), "{}", zero.err);
+    let address = daemon.address();
+    let calibrate = ["calibrate", ".", "--channel", "speed", "--by", "B. Olsen"];
+    let (code, out, err) = entered(&tank, &calibrate, "1.0\n");
+    assert!(code == Some(1) && out.is_empty(), "{out}{err}");
+    assert!(err.contains("calibrate with --page"), "{err}{}", daemon.said());
+    let by_page = [&calibrate[..], &["--page", &address]].concat();
+    let (code, out, err) = entered(&tank, &by_page, "1.0\n");
+    // The daemon has read; one load makes no gain.
+    assert!(out.contains("load 1 m/s: raw ") && out.contains(" readings"), "{out}{err}");
+    assert!(code == Some(1) && err.contains("1 readings, at least 2"), "{err}");
     daemon.terminate();
     tank.edit("identify = true }", "identify = true }\nidentity = \"HBM\"");
     let told = rolltank(tank.path(), &["check", ".", "--seconds", "0.5"]);
@@ -78,19 +105,11 @@ fn a_zero_and_a_gain_are_taken_live_and_stand_in_the_next_recording() {
     let taken = tank.text("calibrations.toml");
     assert!(taken.contains("by = \"A. Nilsson\"") && taken.contains("UTC"), "{taken}");
 
-    let mut child = Command::new(env!("CARGO_BIN_EXE_rolltank"))
-        .args(["calibrate", ".", "--channel", "speed", "--by", "B. Olsen", "--seconds", "0.5"])
-        .current_dir(tank.path())
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let calibrate =
+        ["calibrate", ".", "--channel", "speed", "--by", "B. Olsen", "--seconds", "0.5"];
     // One load twice makes no gain, and is refused.
-    std::io::Write::write_all(&mut child.stdin.take().unwrap(), b"1.0\n1.0\n\n").unwrap();
-    let ended = child.wait_with_output().unwrap();
-    let said = String::from_utf8_lossy(&ended.stderr);
-    assert_eq!(ended.status.code(), Some(1), "{said}");
+    let (code, _, said) = entered(&tank, &calibrate, "1.0\n1.0\n\n");
+    assert_eq!(code, Some(1), "{said}");
     assert!(said.contains("all loads are 1, a gain needs two that differ"), "{said}");
 
     let mut daemon = Daemon::start(&tank, &[]);

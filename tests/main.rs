@@ -2,6 +2,7 @@
 #![expect(clippy::print_stdout, reason = "a failing story shows what it saw")]
 
 mod a_decay_at_live_instruments_is_reported;
+mod a_full_disk_holds_up_no_daemon;
 mod a_pulled_cable_or_a_killed_daemon_costs_no_more_than_it_must;
 mod a_run_rejected_by_hand_leaves_every_identification;
 mod architecture;

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::synthetic_roll::{STEP_S, Truth};
+use devices::{Quantity, channel::Counts};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use replay::Columns;
@@ -177,6 +178,7 @@ fn identified(
         speed_m_s: froude * 4.952,
         froude,
         sampling: Sampling::of(&run),
+        counts: vec![(Quantity::Roll, Counts::default())],
         run,
         identification,
     }

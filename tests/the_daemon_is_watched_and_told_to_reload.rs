@@ -80,7 +80,9 @@ fn a_new_campaign_file_comes_into_force_at_rest_and_a_wrong_one_never() {
     tank.edit("condition = \"bare hull\"", "condition = \"bilge keels\"");
     daemon.signal("-HUP");
     daemon.wait_for("linked", 4);
-    daemon.wait_for("latency_s=", 2);
+    // On a busy machine more than one run may have come under the old file.
+    let n_before = daemon.said().matches("latency_s=").count();
+    daemon.wait_for("latency_s=", n_before + 1);
     let (status, said) = daemon.terminate();
     assert_eq!(status.code(), Some(0), "{said}");
     assert!(said.contains("gm_m = 74 m is above the beam"), "{said}");
@@ -120,12 +122,14 @@ fn systemd_hears_that_the_daemon_is_ready_alive_reloading_and_stopping() {
     let path = tank.path().join("notify");
     let socket = UnixDatagram::bind(&path).unwrap();
     socket.set_read_timeout(Some(Duration::from_mins(1))).unwrap();
+    // Every word to systemd is one datagram of lines.
     let hear = |wanted: &str| {
         let mut heard = [0; 512];
         loop {
             let length = socket.recv(&mut heard).unwrap_or_else(|_| panic!("never {wanted}"));
-            if String::from_utf8_lossy(&heard[..length]).contains(wanted) {
-                return;
+            let said = String::from_utf8_lossy(&heard[..length]).into_owned();
+            if said.lines().any(|line| line == wanted) {
+                return said;
             }
         }
     };
@@ -133,11 +137,17 @@ fn systemd_hears_that_the_daemon_is_ready_alive_reloading_and_stopping() {
     let systemd = [("NOTIFY_SOCKET", path.as_str()), ("WATCHDOG_USEC", "300000")];
     let json = ["--log-format", "json"];
     let daemon = Daemon::start_with(&tank, &json, &systemd);
-    hear("READY=1");
+    assert!(hear("READY=1").contains("STATUS=recording"));
     hear("WATCHDOG=1");
     hear("WATCHDOG=1");
     daemon.signal("-HUP");
-    hear("RELOADING=1");
+    // Without the instant in the same word systemd 253 takes the reload for failed.
+    let reloading = hear("RELOADING=1");
+    let told = reloading.lines().find_map(|line| line.strip_prefix("MONOTONIC_USEC="));
+    let told_us: u64 = told.and_then(|told| told.parse().ok()).expect(&reloading);
+    let uptime = std::fs::read_to_string("/proc/uptime").expect("Linux tells it");
+    let uptime_s = uptime.split('.').next().and_then(|whole| whole.parse::<u64>().ok());
+    assert!((told_us / 1_000_000).abs_diff(uptime_s.expect("a number")) < 120, "{reloading}");
     hear("READY=1");
     let (status, said) = {
         daemon.signal("-TERM");

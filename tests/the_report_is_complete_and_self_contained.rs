@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::Path;
 
+use devices::Quantity;
+use devices::channel::Counts;
 use rolltank::inverse::estimate::Estimate;
 use rolltank::report::{self, ReportError};
 use rolltank::results::Results;
@@ -95,6 +97,29 @@ fn a_run_page_shows_every_part_that_its_run_has() {
         assert_eq!(shown("law-gaps"), of_the_model > 0, "run {}", run.id);
         assert_eq!(shown("remarks"), remarks.len() > of_the_model, "run {}", run.id);
     }
+}
+
+#[test]
+fn a_run_page_tells_what_each_instrument_lost_and_says_so_when_that_is_nothing() {
+    let campaign = synthetic_results::campaign("OE basin");
+    let mut results = synthetic_results::results();
+    let roll = Counts { received: 1993, lost: 5, repeated: 2, over_range: 1, damaged: 4 };
+    let speed = Counts { received: 200, ..Counts::default() };
+    results.runs[0].counts = vec![(Quantity::Roll, roll), (Quantity::Speed, speed)];
+    results.runs[1].counts = vec![(Quantity::Speed, speed)];
+    results.runs[2].counts = Vec::new();
+    let folder = tempfile::tempdir().expect("a folder for the report");
+    report::write_all(&campaign, &results, folder.path()).expect("a report");
+    let told = |run: usize| {
+        let page = run_page(folder.path(), &results.runs[run].id);
+        let part = page.split("id=\"counted\"").nth(1)?;
+        Some(text(&part.split("</section>").next()?.replace("</td>", " ")))
+    };
+    let lost = told(0).expect("a part of its own");
+    assert!(lost.contains("roll 1993 5 2 1 4 speed 200 0 0 0 0"), "{lost}");
+    assert!(!lost.contains("Every sample came"), "{lost}");
+    assert!(told(1).is_some_and(|told| told.contains("Every sample came")));
+    assert_eq!(told(2), None, "nobody counted");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! A live instrument: its port's thread, and what its bytes mean.
 
 use std::collections::VecDeque;
+use std::io;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -9,7 +10,9 @@ use crate::clock::Clock;
 use crate::driver::Session;
 use crate::error::InstrumentError;
 use crate::interpreter::{InstrumentEvent, Interpreter};
-use crate::port::{LinkEvent, LinkOptions, LinkReader, adapter_latency_s};
+use crate::port::{
+    LinkEvent, LinkOptions, LinkReader, LinkThread, Outlet, PortFault, adapter_latency_s,
+};
 use crate::setup::DeviceConfig;
 use crate::{Device, DeviceError, Quantity, Reading, Sample};
 
@@ -29,25 +32,47 @@ pub struct Instrument {
     waiting: VecDeque<InstrumentEvent>,
 }
 
+/// An instrument whose events another thread takes from where its port's thread puts them.
+pub struct AttachedInstrument {
+    /// The port's thread.
+    pub thread: LinkThread,
+    /// What its events mean.
+    pub interpreter: Interpreter,
+    /// What its adapter may hold back [s]; a recording keeps it, since a replay needs it.
+    pub latency_s: f64,
+}
+
 impl Instrument {
     /// Starts the port's thread; the port may come later.
     ///
     /// # Errors
     /// [`InstrumentError`] when the settings are wrong or the system has no thread to give.
     pub fn start(config: &DeviceConfig, clock: Arc<dyn Clock>) -> Result<Self, InstrumentError> {
-        let latency_s = adapter_latency_s(&config.port).unwrap_or(0.0).max(PLAIN_LATENCY_S);
+        let (session, options) = conversation(config)?;
+        let latency_s = latency_s(config);
         let interpreter = Interpreter::new(config, latency_s)?;
-        let session = Session::new(config.protocol()?, config.pace.pace(&config.line));
-        let options = LinkOptions { path: config.port.clone(), line: config.line, realtime: true };
-        let reader =
-            LinkReader::start(options, session, clock).map_err(|error| InstrumentError::Port {
-                device: config.name.clone(),
-                port: config.port.clone(),
-                fault: crate::port::PortFault::Other(error.to_string()),
-                present: Vec::new(),
-            })?;
+        let reader = LinkReader::start(options, session, clock);
+        let reader = reader.map_err(|error| no_thread(config, &error))?;
         let name = config.name.clone();
         Ok(Self { name, latency_s, reader, interpreter, waiting: VecDeque::new() })
+    }
+
+    /// The same for who takes the events of several ports from one queue, into which `outlet` puts
+    /// them.
+    ///
+    /// # Errors
+    /// As [`Instrument::start`].
+    pub fn attach(
+        config: &DeviceConfig,
+        clock: Arc<dyn Clock>,
+        outlet: Outlet,
+    ) -> Result<AttachedInstrument, InstrumentError> {
+        let (session, options) = conversation(config)?;
+        let latency_s = latency_s(config);
+        let interpreter = Interpreter::new(config, latency_s)?;
+        let thread = LinkThread::start(options, session, clock, outlet);
+        let thread = thread.map_err(|error| no_thread(config, &error))?;
+        Ok(AttachedInstrument { thread, interpreter, latency_s })
     }
 
     /// Waits at most so long for what happened next on the link, and appends what it means.
@@ -57,25 +82,33 @@ impl Instrument {
         Some(event)
     }
 
-    /// The port's thread, what its events mean, and the adapter's latency [s]: for who takes events
-    /// on one thread and their meaning on another.
-    pub fn into_parts(self) -> (LinkReader, Interpreter, f64) {
-        (self.reader, self.interpreter, self.latency_s)
-    }
-
     /// Counts of each channel since the start.
     pub fn counts(&self) -> impl Iterator<Item = (Quantity, Counts)> {
         self.interpreter.counts()
     }
 
-    /// What its adapter may hold back [s]; a recording keeps it, since a replay needs it.
+    /// What its adapter may hold back [s]; a replay needs it.
     pub fn latency_s(&self) -> f64 {
         self.latency_s
     }
+}
 
-    /// Whether its thread runs under `SCHED_FIFO`.
-    pub fn is_realtime(&self) -> bool {
-        self.reader.is_realtime()
+fn conversation(config: &DeviceConfig) -> Result<(Session, LinkOptions), InstrumentError> {
+    let session = Session::new(config.protocol()?, config.pace.pace(&config.line));
+    let options = LinkOptions { path: config.port.clone(), line: config.line, realtime: true };
+    Ok((session, options))
+}
+
+fn latency_s(config: &DeviceConfig) -> f64 {
+    adapter_latency_s(&config.port).unwrap_or(0.0).max(PLAIN_LATENCY_S)
+}
+
+fn no_thread(config: &DeviceConfig, error: &io::Error) -> InstrumentError {
+    InstrumentError::Port {
+        device: config.name.clone(),
+        port: config.port.clone(),
+        fault: PortFault::Other(error.to_string()),
+        present: Vec::new(),
     }
 }
 

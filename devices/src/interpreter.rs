@@ -5,7 +5,7 @@
 
 use std::path::PathBuf;
 
-use crate::channel::{Channel, Counts};
+use crate::channel::{Channel, Counted, Counts};
 use crate::driver::{Decoded, FieldValue, Session, Taken};
 use crate::error::InstrumentError;
 use crate::port::LinkEvent;
@@ -136,6 +136,16 @@ impl Interpreter {
     /// Counts of each channel since the start.
     pub fn counts(&self) -> impl Iterator<Item = (Quantity, Counts)> {
         self.channels.iter().map(|state| (state.channel.quantity, state.counts))
+    }
+
+    /// The counts of each channel that has brought a sample, as they stand now.
+    pub fn counted(&self) -> impl Iterator<Item = Counted> {
+        let begun = self.channels.iter().filter(|state| state.last_time_s.is_finite());
+        begun.map(|state| Counted {
+            quantity: state.channel.quantity,
+            time_s: state.last_time_s,
+            counts: state.counts,
+        })
     }
 
     /// Takes what happened, in its order, and appends what it means.

@@ -30,7 +30,7 @@ mod trouble;
 pub use attachment::{Attachment, AttachmentError};
 pub use device::{Device, DeviceError, Reading};
 pub use error::InstrumentError;
-pub use instrument::Instrument;
+pub use instrument::{AttachedInstrument, Instrument};
 pub use interpreter::{InstrumentEvent, Interpreter, Measured};
 pub use quality::Quality;
 pub use sample::{Quantity, Sample};

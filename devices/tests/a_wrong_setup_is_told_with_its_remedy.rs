@@ -10,7 +10,7 @@ use devices::emulator::{EmulatedPort, Emulator, Fault, Faults, emulator};
 use devices::setup::{self, DeviceSetup};
 use devices::{Instrument, InstrumentError, InstrumentEvent};
 
-use crate::bench::{bench, channels, device, swing};
+use crate::bench::{Bench, bench, channels, device, swing};
 
 fn setups(text: &str) -> Vec<DeviceSetup> {
     let mut table: toml::Table = text.parse().expect("the text is TOML");
@@ -50,6 +50,11 @@ fn first_trouble(config: &setup::DeviceConfig) -> String {
     panic!("no trouble was told");
 }
 
+/// Device and port stand in a message, the port by its stable name.
+fn names_device_and_port(told: &str) -> bool {
+    told.starts_with("device \"bench\": ") && told.contains("usb-Emulated-if00-port0\"")
+}
+
 /// Plugs the emulator of a driver in where a device listens.
 fn plug_in(config: &setup::DeviceConfig, driver: &str, settings: &str) -> EmulatedPort {
     let emulator =
@@ -64,7 +69,7 @@ fn plug_in(config: &setup::DeviceConfig, driver: &str, settings: &str) -> Emulat
 fn a_missing_port_is_told() {
     let (_folder, config) = device("cobs-board", &channels(1));
     let told = first_trouble(&config);
-    assert!(told.starts_with("device \"bench\": port \""), "{told}");
+    assert!(names_device_and_port(&told), "{told}");
     assert!(told.contains("usb-Emulated-if00-port0\" does not exist\nhint: "), "{told}");
 }
 
@@ -112,6 +117,7 @@ fn a_port_that_this_user_may_not_open_is_told() {
     }
     let output = command.output().unwrap();
     let told = String::from_utf8_lossy(&output.stdout);
+    assert!(told.contains("device \"bench\": port \""), "{told}");
     assert!(told.contains("may not be opened by this user\nhint: add the user to"), "{told}");
 }
 
@@ -129,6 +135,7 @@ fn a_parity_that_the_port_refuses_is_told() {
     config.line.parity = devices::port::Parity::Even;
     let _port = plug_in(&config, "hbm-ascii", "");
     let told = first_trouble(&config);
+    assert!(names_device_and_port(&told), "{told}");
     assert!(told.contains("refuses parity \"Even\" and stays at \"None\"\nhint: "), "{told}");
 }
 
@@ -138,6 +145,7 @@ fn garbage_of_a_wrong_baud_is_told() {
     // What a line at another rate brings: bytes, but never a frame.
     let _port = plug_in(&config, "cobs", "fields = 4");
     let told = first_trouble(&config);
+    assert!(names_device_and_port(&told), "{told}");
     assert!(told.contains("brings garbage at 115200 8N1"), "{told}");
     assert!(told.contains("bytes without one good frame, such as "), "{told}");
     assert!(told.contains("hint: check baud and parity"), "{told}");
@@ -147,9 +155,13 @@ fn garbage_of_a_wrong_baud_is_told() {
 fn another_instrument_on_the_port_is_told() {
     let lines = format!("identity = \"4018\"\n{}", channels(1));
     let mut bench = bench("adam-4017", &lines, 100.0);
-    bench.listen_until(|bench| !bench.troubles().is_empty());
-    let told = &bench.troubles()[0];
-    assert!(told.ends_with("answers \"4017\", expected is \"4018\""), "{told}");
+    let is_told = |bench: &Bench| bench.trouble().is_some();
+    bench.listen_until(is_told);
+    let told = told(bench.trouble().expect("it was told"));
+    assert!(names_device_and_port(&told), "{told}");
+    let seen =
+        "answers \"4017\", expected is \"4018\"\nhint: another instrument hangs on this port";
+    assert!(told.contains(seen), "{told}");
 }
 
 #[test]
@@ -158,6 +170,7 @@ fn an_address_where_nobody_is_is_told() {
     let (_folder, config) = device("adam-4017", &lines);
     let _port = plug_in(&config, "dcon", "modules = [{ address = 1 }]");
     let told = first_trouble(&config);
+    assert!(names_device_and_port(&told), "{told}");
     assert!(told.contains("nothing comes from port"), "{told}");
     assert!(told.contains("asked \"#07\\r\"\nhint: check power, address"), "{told}");
 }
@@ -222,6 +235,7 @@ fn two_instruments_on_one_address_are_told() {
     let byte_ns = config.line.byte_ns();
     let _port = EmulatedPort::plug_in(&config.port, Box::new(Twins(one)), byte_ns, clock).unwrap();
     let told = first_trouble(&config);
+    assert!(names_device_and_port(&told), "{told}");
     assert!(told.contains("answers that nobody asked for: "), "{told}");
     assert!(told.contains("hint: two instruments may have one address"), "{told}");
 }

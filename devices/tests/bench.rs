@@ -8,7 +8,7 @@ use devices::clock::{Clock, WallClock};
 use devices::emulator::{EmulatedPort, Signal, emulator};
 use devices::port::LinkEvent;
 use devices::setup::{DeviceConfig, DeviceSetup};
-use devices::{Instrument, InstrumentEvent, Measured};
+use devices::{Instrument, InstrumentError, InstrumentEvent, Measured};
 use tempfile::TempDir;
 
 /// A slow roll in raw units, different on every field, so that times show in values.
@@ -101,6 +101,14 @@ impl Bench {
             _ => None,
         };
         self.events.iter().filter_map(sample).collect()
+    }
+
+    /// The first that was told that a person must mend.
+    pub(crate) fn trouble(&self) -> Option<&InstrumentError> {
+        self.events.iter().find_map(|event| match event {
+            InstrumentEvent::Trouble(error) => Some(error),
+            _ => None,
+        })
     }
 
     /// Everything told that a person must mend.

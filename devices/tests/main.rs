@@ -2,7 +2,9 @@
 
 mod a_cable_is_pulled_and_put_back;
 mod a_late_answer_is_nobodys;
+mod a_reader_that_fails_comes_back;
 mod a_replay_gives_the_live_samples_to_the_bit;
+mod a_slow_reader_loses_nothing;
 mod a_wrong_setup_is_told_with_its_remedy;
 mod any_bytes_are_survived;
 mod bench;

@@ -345,6 +345,11 @@ pub enum ReplayError {
 }
 
 impl ReplayError {
+    /// Whether it says that the disk has no room.
+    pub fn is_for_want_of_room(&self) -> bool {
+        matches!(self, Self::DiskFull { .. } | Self::NearlyFull { .. })
+    }
+
     pub(crate) fn write(path: &Path, source: io::Error) -> Self {
         Self::Write { path: path.to_owned(), source: source.into() }
     }

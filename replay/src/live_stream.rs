@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 
+use devices::channel::Counted;
 use devices::driver::Session;
 use devices::{Attachment, InstrumentEvent, Interpreter, Sample};
 
@@ -34,6 +35,7 @@ pub(crate) struct LiveStream {
     waiting: VecDeque<Sample>,
     events: Vec<InstrumentEvent>,
     losses: LinkLosses,
+    counted: Vec<Counted>,
     samples: u64,
 }
 
@@ -46,6 +48,7 @@ impl LiveStream {
             waiting: VecDeque::new(),
             events: Vec::new(),
             losses: LinkLosses::default(),
+            counted: Vec::new(),
             samples: 0,
         })
     }
@@ -68,6 +71,7 @@ impl LiveStream {
     fn decode(&mut self, raw: &Raw) {
         let Some((session, interpreter)) = self.attached.get_mut(&*raw.device) else { return };
         interpreter.replay(&raw.link_event(), session, &mut self.events);
+        self.counted.extend(interpreter.counted());
         for event in self.events.drain(..) {
             self.losses.push(&raw.device, &event);
             self.waiting.extend(event.usable_sample());
@@ -89,6 +93,10 @@ impl Stream for LiveStream {
                 None => return Ok(None),
             }
         }
+    }
+
+    fn take_counted(&mut self) -> Vec<Counted> {
+        std::mem::take(&mut self.counted)
     }
 
     fn bytes_read(&self) -> u64 {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use devices::channel::Counted;
 use devices::{Device, DeviceError, Quantity, Reading, Sample};
 
 use crate::columns::Columns;
@@ -26,6 +27,8 @@ pub struct Player {
     /// What is known before anything is read.
     endings: Vec<Note>,
     notes: Vec<Note>,
+    /// What instruments counted in the last batch, each behind so many of its samples.
+    counted: Vec<(usize, Counted)>,
     zero_log_time_ns: u64,
 }
 
@@ -62,6 +65,7 @@ impl Player {
             gaps,
             endings: sources.notes,
             notes: Vec::new(),
+            counted: Vec::new(),
             zero_log_time_ns,
         };
         player.renew_notes(false);
@@ -81,6 +85,12 @@ impl Player {
         &self.notes
     }
 
+    /// What the instruments of a live recording counted in the last batch, each with the samples of
+    /// the batch that came before it; other recordings tell of none.
+    pub fn counted(&self) -> &[(usize, Counted)] {
+        &self.counted
+    }
+
     /// Log time [ns] of time zero: the first of a foreign MCAP recording, 0 for every other.
     pub fn zero_log_time_ns(&self) -> u64 {
         self.zero_log_time_ns
@@ -97,6 +107,11 @@ impl Player {
     }
 
     fn read_samples(&mut self, samples: &mut Vec<Sample>) -> Result<Reading, ReplayError> {
+        let n_before = samples.len();
+        self.counted.clear();
+        for head in &mut self.heads {
+            self.counted.extend(head.stream.take_counted().into_iter().map(|counted| (0, counted)));
+        }
         for _ in 0..BATCH_SAMPLES {
             let Some(head) = earliest(&mut self.heads) else { return Ok(Reading::Ended) };
             // The sample goes out before its successor is read, so an error loses nothing.
@@ -107,6 +122,9 @@ impl Player {
                 samples.push(sample);
             }
             head.next = head.stream.next()?;
+            let n_read = samples.len() - n_before;
+            let counted = head.stream.take_counted().into_iter();
+            self.counted.extend(counted.map(|counted| (n_read, counted)));
         }
         Ok(Reading::More)
     }

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use devices::Sample;
+use devices::channel::Counts;
+use devices::{Quantity, Sample};
 use serde::{Deserialize, Serialize};
 
 /// One thing that happened in the tank; its time is on the recording's own time base.
@@ -182,6 +183,15 @@ pub struct ChannelCounts {
     pub over_range: u64,
     /// Samples whose check failed.
     pub damaged: u64,
+}
+
+impl ChannelCounts {
+    /// What was counted on a channel, under its name.
+    pub fn of(quantity: Quantity, counts: Counts) -> Self {
+        let Counts { received, lost, repeated, over_range, damaged } = counts;
+        let channel = quantity.name().to_owned();
+        Self { channel, samples: received, lost, repeated, over_range, damaged }
+    }
 }
 
 /// Why a stretch of the recording gave no run.

@@ -8,7 +8,6 @@ use std::env;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -20,9 +19,8 @@ use replay::{
 
 use crate::recorded_days::{RATE_HZ, instants_kept, live, names, read, records, time_s};
 use crate::recordings::folder;
+use crate::small_disk::{FOLDER, told_on_a_disk_of};
 
-/// Names the folder with the small disk to the process that fills it.
-const FOLDER: &str = "ROLLTANK_SMALL_DISK";
 /// What the small disk holds [bytes], and what of it is taken by something else at first.
 const DISK_BYTES: u64 = 6 << 20;
 const BALLAST_BYTES: u64 = 3 << 20;
@@ -134,35 +132,12 @@ fn child_that_fills_the_small_disk() {
     println!("\n{}", story(&folder, &mut LocalDisk, remove));
 }
 
-/// Runs the child on a tmpfs, when this system lets us have one.
-fn fill_a_real_disk(namespace: &[&str]) -> Option<String> {
-    let folder = folder();
-    let child = concat!(module_path!(), "::child_that_fills_the_small_disk");
-    let (_, child) = child.split_once("::").expect("the crate comes first");
-    let script = "mount -t tmpfs -o size=$0 tmpfs $1 && echo mounted && shift && exec \"$@\"";
-    let output = Command::new("unshare")
-        .args(namespace)
-        .args(["sh", "-c", script, &DISK_BYTES.to_string()])
-        .arg(folder.path())
-        .arg(env::current_exe().expect("this program has a path"))
-        .args(["--exact", child, "--ignored", "--nocapture"])
-        .env(FOLDER, folder.path())
-        .output()
-        .ok()?;
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    if !text.starts_with("mounted") {
-        return None;
-    }
-    assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
-    let told = text.lines().find(|line| line.starts_with("full after"));
-    Some(told.expect("the child tells").to_owned())
-}
-
 #[test]
 fn a_disk_that_fills_up_takes_nothing_that_was_recorded() {
-    let namespaces: [&[&str]; 2] = [&["--mount"], &["--user", "--map-root-user", "--mount"]];
-    if let Some(told) = namespaces.into_iter().find_map(fill_a_real_disk) {
-        println!("tmpfs of {DISK_BYTES} bytes: {told}");
+    let child = concat!(module_path!(), "::child_that_fills_the_small_disk");
+    if let Some(told) = told_on_a_disk_of(DISK_BYTES, child) {
+        let told = told.lines().find(|line| line.starts_with("full after"));
+        println!("tmpfs of {DISK_BYTES} bytes: {}", told.expect("the child tells"));
         return;
     }
     println!("no tmpfs may be mounted here, a disk with a quota stands in: {}", quota_story());

@@ -18,6 +18,7 @@ mod python_and_we_read_each_other;
 mod recorded_days;
 mod recordings;
 mod recordings_are_listed_and_never_overwritten;
+mod small_disk;
 mod tables_of_any_style_are_read;
 mod time_stamps_are_kept_or_mended;
 mod torn_recordings_are_read_up_to_the_tear;

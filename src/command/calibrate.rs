@@ -2,16 +2,23 @@
 
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::PathBuf;
+use std::thread;
+use std::time::Duration;
 
 use ::devices::Quantity;
 use ::devices::channel::{Calibration, Curve, gain_from_loads, zero_from_readings};
 use clap::Args;
 
 use super::calibrating::{ChannelName, device_of, keep, now, readings};
+use super::daemon_page::DaemonPage;
 use super::{Exit, Failure};
 use crate::campaign::{self, TakenCalibration};
+use crate::page::status::RecentRaw;
 
-/// Calibrate a channel by known loads: apply one, enter it, and so on; the daemon must not run
+/// What the page of a daemon tells is a mean over so long, all of it under the load.
+const PAGE_MEAN: Duration = Duration::from_secs(5);
+
+/// Calibrate a channel by known loads: apply one, enter it, and so on
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Folder that holds campaign.toml
@@ -25,9 +32,12 @@ pub(super) struct Arguments {
     /// Certificate, weights, conditions
     #[arg(long, value_name = "TEXT", default_value = "")]
     note: String,
-    /// Mean of each load over so long
-    #[arg(long, value_name = "SECONDS", default_value_t = 3.0, value_parser = super::positive)]
+    /// Mean of each load over so long; a daemon's page tells the last 5 seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 3.0, value_parser = super::positive,
+          conflicts_with = "page")]
     seconds: f64,
+    #[command(flatten)]
+    daemon: DaemonPage,
 }
 
 pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
@@ -51,9 +61,15 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
             writeln!(out, "\"{load}\" is no number, such as 9.81; the load is not taken")?;
             continue;
         };
-        let raw = readings(device, &[quantity], arguments.seconds)?.concat();
-        let (mean, sd) = zero_from_readings(&raw).map_err(failed)?;
-        writeln!(out, "load {load} {unit}: raw {mean:.4}, sd {sd:.4}, {} readings", raw.len())?;
+        let RecentRaw { n_readings, mean, sd } = if arguments.daemon.is_named() {
+            thread::sleep(PAGE_MEAN);
+            arguments.daemon.recent(quantity)?
+        } else {
+            let raw = readings(device, &[quantity], arguments.seconds)?.concat();
+            let (mean, sd) = zero_from_readings(&raw).map_err(failed)?;
+            RecentRaw { n_readings: raw.len(), mean, sd }
+        };
+        writeln!(out, "load {load} {unit}: raw {mean:.4}, sd {sd:.4}, {n_readings} readings")?;
         out.flush()?;
         pairs.push([mean, si(quantity, load)]);
     }
@@ -76,6 +92,9 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     )?;
     let taken = TakenCalibration { device: device.name.clone(), quantity, calibration };
     keep(&arguments.campaign, taken)?;
+    if arguments.daemon.is_named() {
+        writeln!(out, "in force from the next rest on, once the daemon is told: systemctl reload")?;
+    }
     Ok(Exit::Done)
 }
 

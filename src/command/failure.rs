@@ -41,6 +41,12 @@ pub enum Failure {
         /// Whose.
         source: InstrumentError,
     },
+    /// The page of the daemon does not answer as it should.
+    #[error("the page of `rolltank run`")]
+    Page {
+        /// What was seen.
+        source: io::Error,
+    },
     /// The readings of a channel make no calibration.
     #[error("device \"{device}\": {}: {source}", quantity.name())]
     Calibration {
@@ -203,10 +209,11 @@ impl Failure {
             Self::Live { source } => source.hint(),
             Self::Instrument { source } => source.hint(),
             Self::PortInUse { .. } => Some(
-                "stop `rolltank run`, or let it take the zero itself: \
-                 curl --json '{\"by\": \"NAME\"}' http://127.0.0.1:8440/zero"
+                "stop `rolltank run`, or let it read: take zeros on its page, calibrate with \
+                 --page 127.0.0.1:8440"
                     .to_owned(),
             ),
+            Self::Page { .. } => Some("its log names the address: \"serving the page\"".to_owned()),
             Self::Replay { source } => source.hint(),
             Self::Import { source } => source.hint(),
             Self::File { .. } => {

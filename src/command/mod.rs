@@ -4,6 +4,7 @@ mod bench;
 mod calibrate;
 mod calibrating;
 mod check;
+mod daemon_page;
 mod demo;
 mod devices;
 mod diagnose;

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 use std::net::SocketAddr;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
@@ -46,9 +46,10 @@ pub enum LogFormat {
     Json,
 }
 
-fn token(arguments: &Arguments) -> Result<Option<String>, Failure> {
-    let Some(path) = &arguments.token_file else { return Ok(None) };
-    let failed = |source| Failure::File { path: path.clone(), source };
+/// The token in a file, where there is one.
+pub(super) fn token(file: Option<&Path>) -> Result<Option<String>, Failure> {
+    let Some(path) = file else { return Ok(None) };
+    let failed = |source| Failure::File { path: path.to_owned(), source };
     let text = std::fs::read_to_string(path).map_err(failed)?;
     let token = text.lines().next().unwrap_or_default().trim().to_owned();
     if token.is_empty() {
@@ -61,7 +62,10 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     let options = DaemonOptions {
         folder: arguments.campaign.clone(),
         rotate_s: MINUTE_S * arguments.rotate,
-        listen: Some(Listen { address: arguments.listen, token: token(arguments)? }),
+        listen: Some(Listen {
+            address: arguments.listen,
+            token: token(arguments.token_file.as_deref())?,
+        }),
     };
     let clock = Arc::new(WallClock::start_at_speed(arguments.clock_speed));
     let results = live::run(&options, &clock, orders(), &Board::default())?;

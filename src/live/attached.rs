@@ -3,16 +3,13 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use devices::channel::{Counts, zero_from_readings};
+use devices::channel::{Counted, Counts, zero_from_readings};
 use devices::port::LinkEvent;
 use devices::setup::DeviceConfig;
 use devices::{Attachment, InstrumentEvent, Interpreter, Measured, Quality, Quantity, Sample};
-use replay::{
-    AttachedDevice, Calibration, ChannelCounts, Gap, LinkLosses, Loss, LossKind, Raw, Record,
-};
+use replay::{AttachedDevice, Calibration, Gap, LinkLosses, Loss, LossKind, Raw, Record};
 
 use super::error::LiveError;
-use super::tally::Tally;
 use crate::page::status::{ChannelStatus, DeviceStatus, RecentRaw};
 
 /// A device of the session.
@@ -29,7 +26,6 @@ pub(super) struct Attached {
 struct AttachedChannel {
     quantity: Quantity,
     counts: Counts,
-    tally: Tally,
     last: Option<Measured>,
     /// Times [s] and raw readings of the last seconds.
     recent: VecDeque<(f64, f64)>,
@@ -47,6 +43,8 @@ pub(super) struct Taken {
     pub(super) records: Vec<Record>,
     /// For the run finder, in order.
     pub(super) samples: Vec<Sample>,
+    /// What was counted when the samples came; none of them before it.
+    pub(super) counted: Vec<(usize, Counted)>,
 }
 
 impl AttachedChannel {
@@ -74,7 +72,6 @@ impl Attached {
         let channel = |quantity| AttachedChannel {
             quantity,
             counts: Counts::default(),
-            tally: Tally::default(),
             last: None,
             recent: VecDeque::new(),
         };
@@ -138,6 +135,7 @@ impl Attached {
         for (channel, (_, counts)) in self.channels.iter_mut().zip(self.interpreter.counts()) {
             channel.counts = counts;
         }
+        taken.counted.extend(self.interpreter.counted().map(|counted| (0, counted)));
         let mut missing = 0;
         for event in &events {
             taken.samples.extend(event.usable_sample());
@@ -161,8 +159,6 @@ impl Attached {
                 let (device, channel) = (self.name.to_string(), channel.quantity.name().to_owned());
                 Record::Loss(Loss { time_s: now_s, device, channel, kind, count })
             }));
-            let at_s = channel.last.map_or(now_s, |last| last.sample.time_s);
-            channel.tally.note(at_s, channel.counts);
         }
     }
 
@@ -236,21 +232,6 @@ impl Attached {
             InstrumentEvent::Overflow { .. } => {}
         }
         0
-    }
-
-    /// What was counted on each channel over a run.
-    pub(super) fn counts(&self, start_s: f64, end_s: f64) -> impl Iterator<Item = ChannelCounts> {
-        self.channels.iter().map(move |channel| {
-            let counts = channel.tally.between(start_s, end_s);
-            ChannelCounts {
-                channel: channel.quantity.name().to_owned(),
-                samples: counts.received,
-                lost: counts.lost,
-                repeated: counts.repeated,
-                over_range: counts.over_range,
-                damaged: counts.damaged,
-            }
-        })
     }
 
     /// The device as it is now.

@@ -92,11 +92,7 @@ pub fn run(
                 campaign.recordings = left.recordings;
                 return Ok(earlier.map(|found| last_told(&campaign, found, &diagnoser, board)));
             }
-            Ended::Broken => {
-                converting.finish()?;
-                return Err(LiveError::PortThread);
-            }
-            Ended::Rotated => campaign.recordings = left.recordings,
+            Ended::Rotated | Ended::RoomAgain => campaign.recordings = left.recordings,
             Ended::Paused(by) => (campaign.recordings, paused_by) = (left.recordings, Some(by)),
             Ended::Resumed => (campaign.recordings, paused_by) = (left.recordings, None),
             Ended::Reloaded(new) if particulars(&new.campaign) == particulars(&campaign) => {

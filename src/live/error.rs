@@ -61,9 +61,6 @@ pub enum LiveError {
         #[from]
         source: ServeError,
     },
-    /// A port's thread has died.
-    #[error("the thread of a port has died; its own message stands above")]
-    PortThread,
     /// The system gives no thread, signal or socket.
     #[error("the system gives no {what}")]
     System {
@@ -89,10 +86,7 @@ impl LiveError {
                 Some("check that the folder can be written and that the disk has room".to_owned())
             }
             Self::Serve { source } => Some(source.hint().to_owned()),
-            Self::Campaign { .. }
-            | Self::Attachment { .. }
-            | Self::PortThread
-            | Self::System { .. } => None,
+            Self::Campaign { .. } | Self::Attachment { .. } | Self::System { .. } => None,
         }
     }
 }

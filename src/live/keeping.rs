@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use devices::clock::WallClock;
 use replay::{
-    ClosedRecording, Exit, LIVE_SOURCE, LocalDisk, Progress, Provenance, Record, Recorder,
+    ClosedRecording, Disk, Exit, LIVE_SOURCE, LocalDisk, Progress, Provenance, Record, Recorder,
     ReplayError, Settings,
 };
 
@@ -14,9 +14,14 @@ use super::error::LiveError;
 use crate::campaign::LIVE_FOLDER;
 use crate::page::stamp;
 
+/// Free space [bytes] at which recording begins again; with less it would soon stop again.
+const ROOM_BYTES: u64 = 2 * Settings::LIVE.reserve_bytes;
+
 /// Takes the records of a session; those of one that is not recorded are let go of.
 pub(super) struct Keeper {
     recorder: Option<Recorder>,
+    /// Where recordings go; none where somebody does not want any.
+    folder: Option<PathBuf>,
     n_refused: u64,
 }
 
@@ -34,32 +39,51 @@ pub(super) fn fresh_name(folder: &Path, clock: &WallClock, now_ns: u64) -> Strin
 }
 
 impl Keeper {
-    /// Begins a recording whose time zero is the clock's.
+    /// Begins a recording whose time zero is the clock's; on a full disk, which is told, it waits.
     pub(super) fn start(
         path: &Path,
         campaign_text: String,
         clock: &WallClock,
     ) -> Result<Self, LiveError> {
-        let folder = path.parent().unwrap_or(path);
-        fs::create_dir_all(folder)
-            .map_err(|source| LiveError::File { path: folder.to_owned(), source })?;
+        let folder = path.parent().unwrap_or(path).to_owned();
+        if let Err(source) = fs::create_dir_all(&folder) {
+            return Err(LiveError::File { path: folder, source });
+        }
         let provenance = Provenance {
             campaign_text,
             source: LIVE_SOURCE.to_owned(),
             zero_log_time_ns: u64::try_from(clock.start_unix_ns()).unwrap_or_default(),
         };
-        let recorder = Recorder::start(path, &provenance, Settings::LIVE, Box::new(LocalDisk))?;
-        Ok(Self { recorder: Some(recorder), n_refused: 0 })
+        let started = Recorder::start(path, &provenance, Settings::LIVE, Box::new(LocalDisk));
+        let mut keeper = Self { recorder: None, folder: Some(folder), n_refused: 0 };
+        match started {
+            Ok(recorder) => keeper.recorder = Some(recorder),
+            Err(error) if error.is_for_want_of_room() => keeper.told(Err(error)),
+            Err(error) => return Err(error.into()),
+        }
+        Ok(keeper)
     }
 
     /// Of a session that somebody does not want recorded.
     pub(super) fn idle() -> Self {
-        Self { recorder: None, n_refused: 0 }
+        Self { recorder: None, folder: None, n_refused: 0 }
     }
 
     /// Whether anything is recorded.
     pub(super) fn records(&self) -> bool {
         self.recorder.is_some()
+    }
+
+    /// Whether nothing is recorded although it is wanted: the disk is full, or fails.
+    fn is_stopped(&self) -> bool {
+        let recorder = self.recorder.as_ref();
+        self.folder.is_some() && recorder.is_none_or(|recorder| recorder.progress().stopped)
+    }
+
+    /// Whether recording has stopped, and the disk has room for another.
+    pub(super) fn may_begin_again(&self) -> bool {
+        let free_bytes = |folder: &PathBuf| LocalDisk.free_bytes(folder).unwrap_or_default();
+        self.is_stopped() && self.folder.as_ref().map_or(0, free_bytes) >= ROOM_BYTES
     }
 
     /// Takes a record; a disk that fails is told once and stops nothing else.
@@ -92,7 +116,8 @@ impl Keeper {
 
     pub(super) fn progress(&self) -> Progress {
         let progress = self.recorder.as_ref().map(Recorder::progress).unwrap_or_default();
-        Progress { unrecorded: progress.unrecorded + self.n_refused, ..progress }
+        let unrecorded = progress.unrecorded + self.n_refused;
+        Progress { unrecorded, stopped: self.is_stopped(), ..progress }
     }
 
     /// Ends the recording; [`ClosedRecording::convert`] gives it its name.

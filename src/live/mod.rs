@@ -13,7 +13,6 @@
 //! other; every queue between threads is bounded, and what finds no place is counted.
 
 mod attached;
-mod attaching;
 mod daemon;
 mod diagnosing;
 mod error;
@@ -23,7 +22,6 @@ mod reporting;
 mod session;
 mod showing;
 mod supervisor;
-mod tally;
 mod telling;
 mod under_way;
 mod virtual_day;

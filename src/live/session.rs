@@ -9,7 +9,6 @@ use devices::clock::{Clock, WallClock};
 use replay::ClosedRecording;
 use tokio::sync::mpsc;
 
-use super::attaching::Detach;
 use super::diagnosing::Diagnoser;
 use super::error::LiveError;
 use super::event::EVENTS_WAITING;
@@ -86,15 +85,15 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
     };
     board.change(|status| status.paused_by = paused_by);
     let options = Options { keep_histories: false, ..Options::default() };
-    let detach = Detach::default();
+    let is_ending = &AtomicBool::new(false);
     let (sender, events) = mpsc::channel(EVENTS_WAITING);
     let (teller, earlier_told) = sync_channel(1);
     let knows_earlier = &AtomicBool::new(false);
     let (recorded, results) = thread::scope(|scope| {
-        let (terminating, heard_by) = (detach.clone(), diagnoser.clone());
+        let heard_by = diagnoser.clone();
         scope.spawn(move || {
             let earlier = earlier.or_else(|| {
-                let earlier = replayed(before, &terminating, &heard_by);
+                let earlier = replayed(before, is_ending, &heard_by);
                 if let Some(earlier) = &earlier {
                     show(before, earlier.clone(), None, board);
                 }
@@ -112,12 +111,12 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
             supervisor,
             keeper,
             runs: Some(runs),
-            detach: detach.clone(),
+            is_ending,
             rotate_s,
             knows_earlier,
             state: State::default(),
         };
-        let attached = under_way.attach(scope, &sender, text);
+        let attached = under_way.attach(&sender, text);
         let reporter = Reporter {
             campaign,
             results,
@@ -132,7 +131,7 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
             Ok(()) => Ok(runtime.block_on(under_way.record(events, orders))),
             Err(error) => {
                 // Whatever was started ends when the loop's end of the queues is gone.
-                detach.now();
+                is_ending.store(true, Ordering::Release);
                 drop((under_way, events));
                 Err(error)
             }
@@ -145,7 +144,7 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
         Ended::Reloaded(_) => "a new campaign file came into force",
         Ended::Rotated => "it was long enough",
         Ended::Paused(_) | Ended::Resumed => "somebody stopped the recording",
-        Ended::Broken => "the thread of a port died",
+        Ended::RoomAgain => "the disk has room again",
     };
     let closed = keeper.close(reason)?;
     let results = results.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
@@ -156,11 +155,11 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
 
 /// What earlier recordings of the campaign say, their pages written again; none when the daemon is
 /// to end before that is known.
-fn replayed(campaign: &Campaign, terminating: &Detach, diagnoser: &Diagnoser) -> Option<Results> {
+fn replayed(campaign: &Campaign, is_ending: &AtomicBool, diagnoser: &Diagnoser) -> Option<Results> {
     let dir = pipeline::results_folder(campaign);
     let options = Options { keep_histories: false, ..Options::default() };
     let replayed = pipeline::replay(campaign, &options, &mut |_| {}, &mut |run, overview| {
-        if terminating.is_wanted() {
+        if is_ending.load(Ordering::Acquire) {
             return Err("the daemon is to end".into());
         }
         diagnoser.hear(run, campaign);
@@ -169,7 +168,7 @@ fn replayed(campaign: &Campaign, terminating: &Detach, diagnoser: &Diagnoser) ->
     });
     match replayed {
         Ok(results) => Some(results),
-        Err(_) if terminating.is_wanted() => None,
+        Err(_) if is_ending.load(Ordering::Acquire) => None,
         Err(error) => {
             tracing::error!("earlier recordings are not in the results: {error}");
             Some(Results::default())

@@ -1,7 +1,7 @@
 //! What a recording and the log say of runs: found, ended, identified or refused.
 
 use devices::clock::Clock;
-use replay::{ExitStatus, Record, Rejection, RunResult, RunStart, RunStop};
+use replay::{ChannelCounts, ExitStatus, Record, Rejection, RunResult, RunStart, RunStop};
 
 use super::reporting::Reported;
 use super::under_way::UnderWay;
@@ -39,7 +39,7 @@ impl UnderWay<'_> {
     }
 
     fn found_run(&mut self, found: &FoundRun, time_s: f64) {
-        let FoundRun { start_s, end_s, end, .. } = *found;
+        let FoundRun { start_s, end_s, end, ref counts, .. } = *found;
         let run = name_of(found);
         let kind = match found.kind {
             RunKind::Decay => "decay",
@@ -54,8 +54,8 @@ impl UnderWay<'_> {
             condition,
             start_s,
         }));
-        let counts = self.state.attached.iter();
-        let counts = counts.flat_map(|attached| attached.counts(start_s, end_s)).collect();
+        let counts = counts.iter().map(|(quantity, counts)| ChannelCounts::of(*quantity, *counts));
+        let counts = counts.collect();
         let reason = end.clause().to_owned();
         let exit_status = ExitStatus::Success;
         let stop = RunStop { time_s, run, start_s, end_s, exit_status, reason, counts };
@@ -70,14 +70,16 @@ impl UnderWay<'_> {
             Ok(identified) => {
                 let latency = self.clock.real(at_ns.saturating_sub(decided_ns));
                 let latency_s = latency.as_secs_f64();
-                tracing::info!(run = identified.id, latency_s, "{}", identified.summary);
+                let known_after_s = decided_ns as f64 / 1e9 - found.end_s;
+                let run = &identified.id;
+                tracing::info!(run, latency_s, known_after_s, "{}", identified.summary);
                 self.keeper.push(Record::Result(RunResult {
                     time_s,
                     run: name_of(&found),
                     schema: IDENTIFICATION_NAME.to_owned(),
                     document: identified.document,
                 }));
-                self.board.change(|status| status.runs.reported(latency_s));
+                self.board.change(|status| status.runs.reported(latency_s, known_after_s));
             }
             Err(reason) => {
                 let (start_s, end_s) = (found.start_s, found.end_s);

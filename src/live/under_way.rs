@@ -4,17 +4,15 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::Scope;
 use std::time::Duration;
 
 use devices::clock::{Clock, WallClock};
-use devices::port::LinkEvent;
-use devices::{Instrument, Quantity, Sample};
+use devices::port::{LinkEvent, LinkThread};
+use devices::{AttachedInstrument, Instrument, Quantity, Sample};
 use replay::{CampaignFile, ClockReading, LinkLosses, Note, Record};
 use tokio::sync::mpsc::{Receiver, Sender};
 
 use super::attached::{Attached, Taken};
-use super::attaching::{Detach, forward};
 use super::error::{LiveError, no_devices};
 use super::event::Event;
 use super::keeping::Keeper;
@@ -35,6 +33,8 @@ const ROLL_AWAY_S: f64 = 10.0;
 /// Rest [s] before a new campaign file comes into force: a model that is heeled for its release is
 /// held no longer than that without a movement.
 const RELOAD_REST_S: f64 = 1.0;
+/// A recording that a full disk has stopped, or prevented, is not followed by another before [s].
+const BEGIN_AGAIN_S: f64 = 5.0;
 /// Rest [s] before one recording gives way to the next for its length alone.
 const ROTATE_REST_S: f64 = 30.0;
 
@@ -50,8 +50,8 @@ pub(super) enum Ended {
     Paused(String),
     /// It is wanted again.
     Resumed,
-    /// A port's thread has died, which a new start may mend.
-    Broken,
+    /// The disk has room again.
+    RoomAgain,
 }
 
 /// A campaign file that was read again.
@@ -70,7 +70,8 @@ pub(super) struct UnderWay<'a> {
     pub(super) keeper: Keeper,
     /// Where samples go, until the recording has ended.
     pub(super) runs: Option<LiveRuns<'a>>,
-    pub(super) detach: Detach,
+    /// Told to whoever works for this recording when it ends.
+    pub(super) is_ending: &'a AtomicBool,
     /// Age [s] at which the recording gives way to the next when the model is at rest.
     pub(super) rotate_s: f64,
     /// Whether it is known what earlier recordings taught; before, no other can begin.
@@ -82,7 +83,8 @@ pub(super) struct UnderWay<'a> {
 #[derive(Default)]
 pub(super) struct State {
     pub(super) attached: Vec<Attached>,
-    pub(super) n_attached: usize,
+    /// The threads of the ports, until the recording ends.
+    pub(super) ports: Vec<LinkThread>,
     /// How the water calms between runs.
     pub(super) settling: Option<Settling>,
     /// Ticks of the clock so far.
@@ -108,12 +110,7 @@ pub(super) struct State {
 
 impl UnderWay<'_> {
     /// Attaches every device and records what is known of them.
-    pub(super) fn attach<'s>(
-        &mut self,
-        scope: &'s Scope<'s, '_>,
-        events: &Sender<Event>,
-        text: String,
-    ) -> Result<(), LiveError> {
+    pub(super) fn attach(&mut self, events: &Sender<Event>, text: String) -> Result<(), LiveError> {
         let now_ns = self.clock.now_ns();
         let time_s = now_ns as f64 / 1e9;
         self.state.began_ns = now_ns;
@@ -123,7 +120,11 @@ impl UnderWay<'_> {
         let live = &self.campaign.live;
         for (device, config) in live.devices.iter().enumerate() {
             let clock = Arc::clone(self.clock) as Arc<dyn Clock>;
-            let (reader, interpreter, latency_s) = Instrument::start(config, clock)?.into_parts();
+            let events = events.clone();
+            let outlet = move |link| events.try_send(Event::Link { device, link }).is_ok();
+            let AttachedInstrument { thread, interpreter, latency_s } =
+                Instrument::attach(config, clock, Box::new(outlet))?;
+            self.state.ports.push(thread);
             let of_name = live.setups.iter().find(|setup| setup.name == config.name);
             let profile = of_name.map_or("", |setup| setup.profile.as_str());
             let records = Attached::introduction(config, profile, latency_s, time_s)?;
@@ -131,8 +132,6 @@ impl UnderWay<'_> {
                 self.keeper.push(record);
             }
             self.state.attached.push(Attached::new(config, interpreter));
-            forward(scope, device, reader, events.clone(), self.detach.clone());
-            self.state.n_attached += 1;
         }
         self.supervisor.ready("recording");
         let (campaign, state) = (self.campaign, &self.state);
@@ -163,7 +162,7 @@ impl UnderWay<'_> {
             time_s: monotonic_ns as f64 / 1e9,
             monotonic_ns,
             realtime_ns: u64::try_from(WallClock::unix_ns()).unwrap_or_default(),
-            tai_offset_s: 0,
+            tai_offset_s: WallClock::tai_offset_s(),
         }));
     }
 
@@ -184,16 +183,6 @@ impl UnderWay<'_> {
             self.state.n_events += 1;
             match event {
                 Event::Link { device, link } => self.link(device, &link),
-                Event::Detached => {
-                    self.state.n_attached -= 1;
-                    if self.state.ended.is_none() {
-                        tracing::error!("the thread of a port has died");
-                        self.end(Ended::Broken);
-                    }
-                    if self.state.n_attached == 0 {
-                        self.end_runs();
-                    }
-                }
                 Event::Reported(reported) => self.reported(*reported),
                 Event::AllReported => self.state.all_reported = true,
                 Event::Order(Order::Terminate) => self.end(Ended::Terminated),
@@ -208,6 +197,10 @@ impl UnderWay<'_> {
                     self.state.wanted = (!self.keeper.records()).then_some(Ended::Resumed);
                 }
                 Event::Tick => self.tick(),
+            }
+            // The ports were closed when the end began, so that nothing comes behind these.
+            if self.state.ended.is_some() && events.is_empty() {
+                self.end_runs();
             }
             if self.state.all_reported
                 && let Some(ended) = self.state.ended.take()
@@ -226,8 +219,9 @@ impl UnderWay<'_> {
             attached.take(link, now_s, &mut self.state.losses, &mut taken);
         }
         taken.records.drain(..).for_each(|record| self.keeper.push(record));
-        self.samples(&taken.samples, link.at_ns().unwrap_or(now_ns));
+        self.samples(&taken, link.at_ns().unwrap_or(now_ns));
         taken.samples.clear();
+        taken.counted.clear();
         self.state.taken = taken;
     }
 
@@ -256,21 +250,21 @@ impl UnderWay<'_> {
         });
     }
 
-    fn samples(&mut self, samples: &[Sample], at_ns: u64) {
+    fn samples(&mut self, Taken { samples, counted, .. }: &Taken, at_ns: u64) {
         if samples.iter().any(|sample| sample.quantity == Quantity::Roll) {
             self.state.roll_ns = at_ns;
         }
         self.show(samples);
         // What is not recorded would be missing in a replay.
         let Some(runs) = self.runs.as_mut().filter(|_| self.keeper.records()) else { return };
-        runs.push(samples, &mut self.state.found);
+        runs.push(samples, counted, &mut self.state.found);
         if !runs.is_at_rest() {
             self.state.moved_ns = at_ns;
         }
         self.take_found(at_ns);
     }
 
-    /// Detaches the devices, unless that is under way; the rest follows from their last events.
+    /// Closes the ports, unless they are; the rest follows when their last events were taken.
     fn end(&mut self, ended: Ended) {
         if matches!(ended, Ended::Terminated) {
             self.supervisor.stopping();
@@ -278,10 +272,12 @@ impl UnderWay<'_> {
         if self.state.ended.is_none() || matches!(ended, Ended::Terminated) {
             self.state.ended = Some(ended);
         }
-        self.detach.now();
+        self.is_ending.store(true, Ordering::Release);
+        self.state.ports.iter().for_each(LinkThread::stop);
+        self.state.ports.clear();
     }
 
-    /// The last event of the last device was taken.
+    /// The last event of the last port was taken.
     fn end_runs(&mut self) {
         // Without a recording nothing has ended; the telling end notes that this one is gone.
         let Some(runs) = self.runs.take().filter(|_| self.keeper.records()) else { return };
@@ -328,30 +324,38 @@ impl UnderWay<'_> {
         self.state.n_ticks += 1;
         self.keeper.tick(self.clock.real(now_ns));
         self.supervisor.alive(self.clock.real(now_ns));
-        let since_s = |at_ns: u64| now_ns.saturating_sub(at_ns) as f64 / 1e9;
-        let state = &mut self.state;
-        let roll_is_away = since_s(state.roll_ns) > ROLL_AWAY_S;
-        let rested_s = if roll_is_away { f64::INFINITY } else { since_s(state.moved_ns) };
-        let may_end = state.ended.is_none() && self.knows_earlier.load(Ordering::Acquire);
-        if may_end && state.wanted.is_some() {
-            if let Some(wanted) = state.wanted.take() {
-                self.end(wanted);
-            }
-        } else if may_end && rested_s >= RELOAD_REST_S && state.reload.is_some() {
-            if let Some(reload) = state.reload.take() {
-                self.end(Ended::Reloaded(reload));
-            }
-        } else if may_end
-            && rested_s >= ROTATE_REST_S
-            && since_s(state.began_ns) >= self.rotate_s
-            && !roll_is_away
-            // On a full disk no other could begin.
-            && !self.keeper.progress().stopped
-            && self.keeper.records()
-        {
-            self.end(Ended::Rotated);
+        if let Some(ended) = self.due(now_ns) {
+            self.end(ended);
         }
         self.renew_status();
+    }
+
+    /// The end that is due, if any.
+    fn due(&mut self, now_ns: u64) -> Option<Ended> {
+        let since_s = |at_ns: u64| now_ns.saturating_sub(at_ns) as f64 / 1e9;
+        let state = &mut self.state;
+        if state.ended.is_some() || !self.knows_earlier.load(Ordering::Acquire) {
+            return None;
+        }
+        if let Some(wanted) = state.wanted.take() {
+            return Some(wanted);
+        }
+        let roll_is_away = since_s(state.roll_ns) > ROLL_AWAY_S;
+        let rested_s = if roll_is_away { f64::INFINITY } else { since_s(state.moved_ns) };
+        if rested_s < RELOAD_REST_S {
+            return None;
+        }
+        if let Some(reload) = state.reload.take() {
+            return Some(Ended::Reloaded(reload));
+        }
+        let age_s = since_s(state.began_ns);
+        if age_s >= BEGIN_AGAIN_S && self.keeper.may_begin_again() {
+            return Some(Ended::RoomAgain);
+        }
+        let is_long = age_s >= self.rotate_s && rested_s >= ROTATE_REST_S && !roll_is_away;
+        // On a full disk no other could begin.
+        let is_recorded = self.keeper.records() && !self.keeper.progress().stopped;
+        (is_long && is_recorded).then_some(Ended::Rotated)
     }
 
     fn renew_status(&mut self) {

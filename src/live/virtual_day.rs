@@ -46,6 +46,11 @@ calibration = { curve = { gain = 1e-4 }, by = "virtual tank" }
 
 /// How often the day is looked at.
 const LOOK: Duration = Duration::from_millis(20);
+/// The clock of the day goes at most so far beyond what the daemon has taken [s]: on a busy machine
+/// the day takes longer, and no instrument seems to be late.
+const AHEAD_MAX_S: f64 = 1.0;
+/// Looks without anything new after which nothing is waited for: the ports are being opened anew.
+const LOOKS_MAX: u32 = 50;
 /// What an instrument may take to attach and be heard [world's time].
 const ATTACH: Duration = Duration::from_mins(1);
 
@@ -83,7 +88,7 @@ pub fn virtual_day(
     let first = conditions.first().map_or("", |(name, _)| name.as_str());
     write_campaign(scenario, folder, first)?;
     let devices = campaign::read(folder)?.live.devices;
-    let clock = Arc::new(WallClock::start_at_speed(speed));
+    let clock = Arc::new(WallClock::start_with_brake(speed));
     let tank = VirtualTank::plug_in(scenario.clone(), seed, &devices, &clock)?;
     let board = Board::default();
     let (sender, receiver) = orders();
@@ -91,7 +96,16 @@ pub fn virtual_day(
     let results = thread::scope(|scope| {
         let (clock, board, orders) = (&clock, &board, sender.clone());
         let daemon = scope.spawn(move || run(&options, clock, (orders, receiver), board));
-        let mut day = Day { folder, scenario, tank: &tank, clock, board, orders: &sender };
+        let mut day = Day {
+            folder,
+            scenario,
+            tank: &tank,
+            clock,
+            board,
+            orders: &sender,
+            taken_s: None,
+            n_looks: 0,
+        };
         let is_over = || daemon.is_finished();
         let played = day.play(&conditions, &is_over, progress);
         // A daemon that has ended by itself has told why.
@@ -137,6 +151,9 @@ struct Day<'d> {
     clock: &'d WallClock,
     board: &'d Board,
     orders: &'d Orders,
+    /// Until when the daemon has taken everything [s], and for how many looks that has not changed.
+    taken_s: Option<f64>,
+    n_looks: u32,
 }
 
 impl Day<'_> {
@@ -165,11 +182,24 @@ impl Day<'_> {
             while self.now_s() < ends_s && !is_over() {
                 let played_s = spent_s + self.now_s() - begins_s;
                 progress(DayProgress { played_s, total_s, status: &self.board.now() });
+                self.wait_for_daemon();
                 thread::sleep(LOOK);
             }
             spent_s += ends_s - begins_s;
+            self.clock.at_most(u64::MAX);
         }
         Ok(())
+    }
+
+    /// Holds the clock back while the daemon is behind.
+    fn wait_for_daemon(&mut self) {
+        let taken_s = self.board.strips().until_s();
+        self.n_looks = if taken_s == self.taken_s { self.n_looks + 1 } else { 0 };
+        self.taken_s = taken_s;
+        let limit_ns = taken_s
+            .filter(|_| self.n_looks < LOOKS_MAX)
+            .map(|taken_s| ((taken_s + AHEAD_MAX_S) * 1e9) as u64);
+        self.clock.at_most(limit_ns.unwrap_or(u64::MAX));
     }
 
     /// Waits until the session of that number hears every instrument.

@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 
 use devices::Quantity;
 use devices::channel::Counts;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::motion::Motion;
 use super::pass::Pass;
@@ -96,7 +96,7 @@ pub struct ChannelStatus {
 }
 
 /// Raw readings of the last seconds, from which a zero can be taken.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RecentRaw {
     /// How many.
     pub n_readings: usize,
@@ -132,21 +132,27 @@ pub struct RunsStatus {
     pub n_rejected: u64,
     /// Runs that found no place in the queue; a replay has them.
     pub n_unheard: u64,
-    /// From the last sample needed to the report on disk, of the latest runs [s, world's time].
+    /// From the sample by which its end is known to the report on disk, of the latest runs
+    /// [s, world's time].
     pub latencies_s: Vec<f64>,
+    /// From the last sample of each of these runs to the one by which its end is known [s].
+    pub known_after_s: Vec<f64>,
 }
 
 /// Latencies that are kept.
 const LATENCIES_KEPT: usize = 1000;
 
 impl RunsStatus {
-    /// One more report, so long after the last sample that it took.
-    pub fn reported(&mut self, latency_s: f64) {
+    /// One more report, so long after the sample by which the end of its run was known, and that so
+    /// long after the last of the run.
+    pub fn reported(&mut self, latency_s: f64, known_after_s: f64) {
         self.n_identified += 1;
         if self.latencies_s.len() == LATENCIES_KEPT {
             self.latencies_s.remove(0);
+            self.known_after_s.remove(0);
         }
         self.latencies_s.push(latency_s);
+        self.known_after_s.push(known_after_s);
     }
 }
 

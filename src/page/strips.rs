@@ -101,6 +101,13 @@ impl Strips {
         }
     }
 
+    /// Until when the values of every channel have come [s], to the length of a stretch.
+    pub fn until_s(&self) -> Option<f64> {
+        let newest = |channel: &Channel| channel.fine.under_way.map(|stretch| stretch.at_s);
+        let until: Option<Vec<f64>> = self.channels.iter().map(newest).collect();
+        until?.into_iter().reduce(f64::min)
+    }
+
     /// What came since the last fetch, as JSON; none when nothing did.
     pub fn fetch(&mut self) -> Option<String> {
         if self.channels.iter().all(|channel| channel.waiting.is_empty()) {

@@ -57,7 +57,7 @@ pub(super) fn alarms(status: &Status) -> Vec<Alarm> {
     };
     if status.recorded.stopped {
         let text = "nothing is recorded: the disk is full or fails".to_owned();
-        alarm(true, text, "free space, then reload the campaign file");
+        alarm(true, text, "free space: recording begins again by itself, at the next rest");
     }
     if let Some(by) = &status.paused_by {
         let text = format!("nothing is recorded: {by} stopped the recording");

@@ -1,7 +1,9 @@
 //! One stream of samples on its way through the run finder, recorded or live.
 
+use std::collections::BTreeMap;
 use std::sync::mpsc::Receiver;
 
+use devices::channel::{Counted, Counts, Tally};
 use devices::{Quantity, Sample};
 use replay::Note;
 
@@ -30,7 +32,7 @@ pub(super) enum Heard {
 }
 
 /// A run as it was found, before it is known what it says.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct FoundRun {
     /// Its number in the recording, counted from 1.
     pub number: u64,
@@ -42,6 +44,8 @@ pub struct FoundRun {
     pub end_s: f64,
     /// Why it ends there.
     pub end: RunEnd,
+    /// What the instruments counted on each channel from its start to its end.
+    pub counts: Vec<(Quantity, Counts)>,
 }
 
 /// The listener has gone away, so there is nobody to play for.
@@ -57,6 +61,7 @@ pub(super) struct Listening<'a> {
     finder: RunFinder,
     events: Vec<Event>,
     overview: OverviewBuilder,
+    tallies: BTreeMap<Quantity, Tally>,
     drive_is_moment: bool,
     asking: Asking<'a>,
     n_found: u64,
@@ -77,6 +82,7 @@ impl<'a> Listening<'a> {
             finder: RunFinder::new(limits(campaign, recording)),
             events: Vec::new(),
             overview: OverviewBuilder::default(),
+            tallies: BTreeMap::new(),
             drive_is_moment: false,
             asking: Asking::new(campaign, options, workers, index),
             n_found: 0,
@@ -88,8 +94,19 @@ impl<'a> Listening<'a> {
         self.finder.is_at_rest()
     }
 
-    pub(super) fn batch(&mut self, batch: &[Sample], tell: &mut Tell<'_>) -> Result<(), Unheard> {
-        for sample in batch {
+    /// Takes samples in the order in which they came, and what instruments had counted when so many
+    /// of them had come.
+    pub(super) fn batch(
+        &mut self,
+        samples: &[Sample],
+        counted: &[(usize, Counted)],
+        tell: &mut Tell<'_>,
+    ) -> Result<(), Unheard> {
+        let mut counted = counted.iter().peekable();
+        for (n_before, sample) in samples.iter().enumerate() {
+            while let Some((_, counted)) = counted.next_if(|(at, _)| *at <= n_before) {
+                self.count(counted);
+            }
             self.drive_is_moment |= sample.quantity == Quantity::Moment;
             self.overview.push(sample);
             self.finder.push(sample, &mut self.events);
@@ -97,7 +114,13 @@ impl<'a> Listening<'a> {
                 self.tell_events(tell)?;
             }
         }
+        counted.for_each(|(_, counted)| self.count(counted));
         Ok(())
+    }
+
+    fn count(&mut self, counted: &Counted) {
+        let tally = self.tallies.entry(counted.quantity).or_default();
+        tally.note(counted.time_s, counted.counts);
     }
 
     /// The stream has ended; `notes` say what was lost of it.
@@ -123,6 +146,7 @@ impl<'a> Listening<'a> {
                             start_s: run.start_s,
                             end_s: run.end_s,
                             end: run.end,
+                            counts: self.counts(run.start_s, run.end_s),
                         },
                         identified: self.asking.identify(run, self.drive_is_moment),
                         overview: self.overview.so_far(self.recording, Vec::new()),
@@ -132,6 +156,11 @@ impl<'a> Listening<'a> {
             })?;
         }
         Ok(())
+    }
+
+    fn counts(&self, start_s: f64, end_s: f64) -> Vec<(Quantity, Counts)> {
+        let tallies = self.tallies.iter();
+        tallies.map(|(quantity, tally)| (*quantity, tally.between(start_s, end_s))).collect()
     }
 }
 

@@ -4,6 +4,7 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread::Scope;
 
 use devices::Sample;
+use devices::channel::Counted;
 use replay::Note;
 
 use super::Options;
@@ -79,11 +80,18 @@ pub fn live<'s, 'a>(
 }
 
 impl LiveRuns<'_> {
-    /// Takes samples in the order in which they came, and appends what is known because of them.
-    pub fn push(&mut self, samples: &[Sample], found: &mut Vec<Found>) {
+    /// Takes samples in the order in which they came, and what instruments had counted when so many
+    /// of them had come; appends what is known because of them.
+    pub fn push(
+        &mut self,
+        samples: &[Sample],
+        counted: &[(usize, Counted)],
+        found: &mut Vec<Found>,
+    ) {
         let Self { listening, heard, n_unheard } = self;
         // The telling end is gone only when it has failed, and then the recording still goes on.
-        drop(listening.batch(samples, &mut |what| tell(what, heard, n_unheard, found)));
+        let tell = &mut |what| tell(what, heard, n_unheard, found);
+        drop(listening.batch(samples, counted, tell));
     }
 
     /// The recording has ended, with what was lost of it; closes whatever was under way.
@@ -116,7 +124,7 @@ fn tell(
     found: &mut Vec<Found>,
 ) -> Result<(), Unheard> {
     match &what {
-        Heard::Run { found: run, .. } => found.push(Found::Run(*run)),
+        Heard::Run { found: run, .. } => found.push(Found::Run(run.clone())),
         Heard::Rejected { rejection, .. } => found.push(Found::Rejected(rejection.clone())),
         _ => {}
     }
@@ -140,7 +148,7 @@ impl LiveResults<'_> {
                 // A worker that panicked has no answer, and the scope passes its panic on.
                 let identified = identified.recv().ok()?;
                 let reason = identified.identification.as_ref().err().cloned();
-                match self.collector.keep(index, identified) {
+                match self.collector.keep(index, identified, &found.counts) {
                     Some(run) => LiveStep::Identified { found, run, overview },
                     None => LiveStep::Refused { found, reason: reason.unwrap_or_default() },
                 }

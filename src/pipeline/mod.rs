@@ -126,10 +126,10 @@ pub fn replay(
                     bytes_total,
                     n_runs: collector.n_runs(),
                 }),
-                Heard::Run { index, identified, overview, .. } => {
+                Heard::Run { index, found, identified, overview } => {
                     // A worker that panicked has no answer, and the scope passes its panic on.
                     let Ok(identified) = identified.recv() else { break };
-                    if let Some(run) = collector.keep(index, identified) {
+                    if let Some(run) = collector.keep(index, identified, &found.counts) {
                         on_run(run, &overview).map_err(|source| PipelineError::Listener {
                             run: run.id.clone(),
                             source,

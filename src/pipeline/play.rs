@@ -4,6 +4,7 @@ use std::sync::mpsc::SyncSender;
 use std::thread;
 use std::time::Duration;
 
+use devices::channel::Counted;
 use devices::{Device, Reading, Sample};
 use replay::{Note, Player};
 
@@ -13,6 +14,15 @@ use super::{Options, PipelineError};
 use crate::campaign::{Campaign, Recording};
 
 pub(super) type Queue = SyncSender<Result<Heard, PipelineError>>;
+
+/// What one reading of a recording brought.
+pub(super) struct Batch<'b> {
+    pub(super) samples: &'b [Sample],
+    /// What instruments counted, each with the samples of the batch that came before it.
+    pub(super) counted: &'b [(usize, Counted)],
+    /// Bytes of the recording so far.
+    pub(super) bytes_read: u64,
+}
 
 /// Plays one recording until it ends, cannot be read further, or nobody listens.
 pub(super) fn recording(
@@ -32,9 +42,11 @@ pub(super) fn recording(
         drop(queue.send(Ok(Heard::Covered { start_s, end_s })));
         Ok(())
     };
-    let played = play(campaign, recording, &mut { covered }, &mut |batch, bytes_read| {
-        pace.wait(batch);
-        heard = listening.batch(batch, tell).and_then(|()| tell(Heard::Read { index, bytes_read }));
+    let played = play(campaign, recording, &mut { covered }, &mut |batch| {
+        let Batch { samples, counted, bytes_read } = *batch;
+        pace.wait(samples);
+        let listened = listening.batch(samples, counted, tell);
+        heard = listened.and_then(|()| tell(Heard::Read { index, bytes_read }));
         heard.is_ok()
     });
     let heard = heard.and_then(|()| match played {
@@ -51,21 +63,23 @@ pub(super) fn play(
     campaign: &Campaign,
     recording: &Recording,
     covered: &mut dyn FnMut(f64, f64) -> Result<(), PipelineError>,
-    listener: &mut dyn FnMut(&[Sample], u64) -> bool,
+    listener: &mut dyn FnMut(&Batch<'_>) -> bool,
 ) -> Result<Vec<Note>, PipelineError> {
     let mut player = Player::open(&recording.name, &recording.files, &campaign.columns)?;
     let size_bytes = size_bytes(recording);
-    let mut batch = Vec::new();
+    let mut samples = Vec::new();
     loop {
-        batch.clear();
-        let reading = player.read(&mut batch);
-        if let ([first, ..], [.., last]) = (&batch[..], &batch[..]) {
+        samples.clear();
+        let reading = player.read(&mut samples);
+        if let ([first, ..], [.., last]) = (&samples[..], &samples[..]) {
             let zero_s = player.zero_log_time_ns() as f64 / 1e9;
             covered(zero_s + first.time_s, zero_s + last.time_s)?;
         }
         let (read, total) = player.progress();
         let share = read as f64 / total.max(1) as f64;
-        if !listener(&batch, (share * size_bytes as f64) as u64) || reading? == Reading::Ended {
+        let bytes_read = (share * size_bytes as f64) as u64;
+        let batch = Batch { samples: &samples, counted: player.counted(), bytes_read };
+        if !listener(&batch) || reading? == Reading::Ended {
             return Ok(player.notes().to_vec());
         }
     }
@@ -78,9 +92,9 @@ struct Pace {
 }
 
 impl Pace {
-    fn wait(&mut self, batch: &[Sample]) {
-        let (Some(speed), Some(sample)) = (self.speed, batch.last()) else { return };
-        let last_s = self.last_s.replace(sample.time_s).unwrap_or(batch[0].time_s);
+    fn wait(&mut self, samples: &[Sample]) {
+        let (Some(speed), Some(sample)) = (self.speed, samples.last()) else { return };
+        let last_s = self.last_s.replace(sample.time_s).unwrap_or(samples[0].time_s);
         let wait = Duration::try_from_secs_f64((sample.time_s - last_s) / speed);
         thread::sleep(wait.unwrap_or_default());
     }

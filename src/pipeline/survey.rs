@@ -36,13 +36,13 @@ pub fn survey(
         let (mut start_s, mut end_s) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut counts = Quantity::ALL.map(|quantity| (quantity, 0));
         let mut covered = |start_s, end_s| claims.extend(&recording.name, start_s, end_s);
-        let played = play(campaign, recording, &mut covered, &mut |batch, bytes_read| {
-            for sample in batch {
+        let played = play(campaign, recording, &mut covered, &mut |batch| {
+            for sample in batch.samples {
                 start_s = start_s.min(sample.time_s);
                 end_s = end_s.max(sample.time_s);
                 counts.iter_mut().filter(|count| count.0 == sample.quantity).for_each(|c| c.1 += 1);
             }
-            progress(&recording.name, bytes_before + bytes_read, bytes_total);
+            progress(&recording.name, bytes_before + batch.bytes_read, bytes_total);
             true
         });
         claims.end_recording();

@@ -1,5 +1,6 @@
 //! The JSON contract `rolltank.identification/1`.
 
+use replay::ChannelCounts;
 use serde::Serialize;
 
 use super::field_units::FieldUnits;
@@ -98,6 +99,7 @@ struct RunJson<'a> {
     inertia_used_kg_m2: Estimate,
     forced: Option<ForcedJson>,
     chain: Option<ChainJson>,
+    counts: Vec<ChannelCounts>,
     gates: Vec<Answer>,
     remarks: &'a [String],
 }
@@ -135,6 +137,7 @@ impl<'a> RunJson<'a> {
             inertia_used_kg_m2: units.inertia_kg_m2(),
             forced: identification.forced.as_ref().map(ForcedJson::new),
             chain: identification.chain.as_ref().map(ChainJson::new),
+            counts: run.counts.iter().map(|(of, counts)| ChannelCounts::of(*of, *counts)).collect(),
             gates: procedure::of_run(run),
             remarks: &identification.remarks,
         }

@@ -4,6 +4,8 @@ use std::ops::{AddAssign, Sub};
 
 use serde::{Deserialize, Serialize};
 
+use crate::Quantity;
+
 /// Counts of one channel; nothing that went wrong is left out.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
@@ -17,6 +19,24 @@ pub struct Counts {
     pub over_range: u64,
     /// Frames that were no frame, or failed their check.
     pub damaged: u64,
+}
+
+impl Counts {
+    /// Whether nothing went wrong.
+    pub fn is_whole(&self) -> bool {
+        [self.lost, self.repeated, self.over_range, self.damaged].iter().all(|count| *count == 0)
+    }
+}
+
+/// The counts of a channel as they stood at its newest sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Counted {
+    /// What the channel measures.
+    pub quantity: Quantity,
+    /// Time of its newest sample [s].
+    pub time_s: f64,
+    /// What was counted until then.
+    pub counts: Counts,
 }
 
 impl AddAssign for Counts {

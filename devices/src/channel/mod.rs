@@ -3,12 +3,14 @@
 mod calibration;
 mod counts;
 mod lag;
+mod tally;
 
 use serde::{Deserialize, Serialize};
 
 pub use calibration::{Calibration, CalibrationError, Curve, gain_from_loads, zero_from_readings};
-pub use counts::Counts;
+pub use counts::{Counted, Counts};
 pub use lag::{Lag, LagKind};
+pub use tally::Tally;
 
 use crate::{Quality, Quantity};
 

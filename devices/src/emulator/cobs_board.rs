@@ -1,8 +1,9 @@
 //! A board that sends COBS frames, as the sketch in `docs/cobs_protocol.md` does.
 
+use super::heard::Heard;
 use super::line_pace::{Conversion, LinePace, send_due};
-use super::{Emulator, Faults, Signal};
-use crate::driver::{CobsSettings, SettingsError, encode_frame, encode_identity, is_who, settings};
+use super::{Emulator, Faults, Opened, Parts, Signal};
+use crate::driver::{CobsSettings, encode_frame, encode_identity, is_who};
 
 const IDENTITY: &str = "rolltank emulated board";
 
@@ -10,17 +11,12 @@ struct CobsBoard {
     n_fields: usize,
     pace: LinePace,
     signal: Signal,
-    heard: Vec<u8>,
+    heard: Heard,
 }
 
-pub(super) fn open(
-    table: &toml::Table,
-    rate_hz: f64,
-    signal: Signal,
-) -> Result<Box<dyn Emulator>, SettingsError> {
-    let settings: CobsSettings = settings(table)?;
-    let n_fields = settings.fields;
-    Ok(Box::new(CobsBoard { n_fields, pace: LinePace::new(rate_hz), signal, heard: Vec::new() }))
+pub(super) fn open(parts: Parts<'_>) -> Opened {
+    let (CobsSettings { fields: n_fields, .. }, pace, signal) = parts.read()?;
+    Ok(Box::new(CobsBoard { n_fields, pace, signal, heard: Heard::default() }))
 }
 
 impl CobsBoard {
@@ -37,15 +33,12 @@ impl CobsBoard {
 
 impl Emulator for CobsBoard {
     fn receive(&mut self, bytes: &[u8], _now_s: f64, _faults: &mut Faults, out: &mut Vec<u8>) {
-        self.heard.extend_from_slice(bytes);
-        while let Some(end) = self.heard.iter().position(|byte| *byte == 0) {
-            let frame: Vec<u8> = self.heard.drain(..=end).collect();
-            if is_who(&frame[..end]) {
+        self.heard.extend(bytes);
+        while let Some(frame) = self.heard.next(|byte| byte == 0) {
+            if is_who(&frame) {
                 out.extend(encode_identity(IDENTITY));
             }
         }
-        let excess = self.heard.len().saturating_sub(256);
-        self.heard.drain(..excess);
     }
 
     fn tick(&mut self, now_s: f64, faults: &mut Faults, out: &mut Vec<u8>) {

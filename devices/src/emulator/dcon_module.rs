@@ -1,8 +1,9 @@
 //! ADAM-4000 and I-7000 modules on one bus: ADAM-4000 user manual, chapter 4.
 
+use super::heard::Heard;
 use super::line_pace::LinePace;
-use super::{Emulator, Faults, Signal};
-use crate::driver::{DconSettings, SettingsError, dcon_checksum, settings};
+use super::{Emulator, Faults, Opened, Parts, Signal};
+use crate::driver::{DconSettings, dcon_checksum};
 
 const NAME: &str = "4017";
 
@@ -10,20 +11,15 @@ struct DconModules {
     settings: DconSettings,
     pace: LinePace,
     signal: Signal,
-    heard: Vec<u8>,
+    heard: Heard,
     /// What each module holds since `#**`, and whether it was read.
     held: Vec<(f64, bool)>,
 }
 
-pub(super) fn open(
-    table: &toml::Table,
-    rate_hz: f64,
-    signal: Signal,
-) -> Result<Box<dyn Emulator>, SettingsError> {
-    let settings: DconSettings = settings(table)?;
+pub(super) fn open(parts: Parts<'_>) -> Opened {
+    let (settings, pace, signal) = parts.read::<DconSettings>()?;
     let held = vec![(0.0, true); settings.modules.len()];
-    let pace = LinePace::new(rate_hz);
-    Ok(Box::new(DconModules { settings, pace, signal, heard: Vec::new(), held }))
+    Ok(Box::new(DconModules { settings, pace, signal, heard: Heard::default(), held }))
 }
 
 /// Sign, five digits and a point wherever the size wants it: `+1.4567`, `+09.789`.
@@ -103,10 +99,9 @@ impl DconModules {
 
 impl Emulator for DconModules {
     fn receive(&mut self, bytes: &[u8], now_s: f64, faults: &mut Faults, out: &mut Vec<u8>) {
-        self.heard.extend_from_slice(bytes);
-        while let Some(end) = self.heard.iter().position(|byte| *byte == b'\r') {
-            let line: Vec<u8> = self.heard.drain(..=end).collect();
-            let mut text = &line[..end];
+        self.heard.extend(bytes);
+        while let Some(line) = self.heard.next(|byte| byte == b'\r') {
+            let mut text = &line[..];
             if self.settings.checksum {
                 let Some((body, sum)) = text.split_last_chunk::<2>() else { continue };
                 if *sum != dcon_checksum(body) {
@@ -122,8 +117,6 @@ impl Emulator for DconModules {
             }
             out.extend(self.framed(&answer));
         }
-        let excess = self.heard.len().saturating_sub(256);
-        self.heard.drain(..excess);
     }
 
     fn tick(&mut self, _now_s: f64, _faults: &mut Faults, _out: &mut Vec<u8>) {}

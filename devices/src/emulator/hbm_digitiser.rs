@@ -1,8 +1,9 @@
 //! HBM/HBK digitisers, alone or on a bus, in text or binary: AD104 operating manual.
 
+use super::heard::Heard;
 use super::line_pace::{Conversion, LinePace, send_due};
-use super::{Emulator, Faults, Signal};
-use crate::driver::{HbmAsciiSettings, HbmBinarySettings, HbmFormat, SettingsError, settings};
+use super::{Emulator, Faults, Opened, Parts, Signal};
+use crate::driver::{HbmAsciiSettings, HbmBinarySettings, HbmFormat};
 
 const LIMIT: f64 = 8_388_608.0;
 /// Everyone on the bus listens, nobody answers.
@@ -15,53 +16,38 @@ struct HbmDigitisers {
     format: Option<HbmFormat>,
     pace: LinePace,
     signal: Signal,
-    heard: Vec<u8>,
+    heard: Heard,
     selected: Option<u8>,
     streaming: bool,
     /// What each holds since `S98;MSV?;`.
     held: Vec<Option<f64>>,
 }
 
-fn new(
-    stations: Vec<u8>,
-    format: Option<HbmFormat>,
-    rate_hz: f64,
-    signal: Signal,
-) -> HbmDigitisers {
-    let held = vec![None; stations.len().max(1)];
-    let pace = LinePace::new(rate_hz);
-    HbmDigitisers {
-        stations,
-        format,
-        pace,
-        signal,
-        heard: Vec::new(),
-        selected: None,
-        streaming: false,
-        held,
-    }
+pub(super) fn open_ascii(parts: Parts<'_>) -> Opened {
+    let (settings, pace, signal) = parts.read::<HbmAsciiSettings>()?;
+    Ok(Box::new(HbmDigitisers::new(settings.stations, None, pace, signal)))
 }
 
-pub(super) fn open_ascii(
-    table: &toml::Table,
-    rate_hz: f64,
-    signal: Signal,
-) -> Result<Box<dyn Emulator>, SettingsError> {
-    let settings: HbmAsciiSettings = settings(table)?;
-    Ok(Box::new(new(settings.stations, None, rate_hz, signal)))
-}
-
-pub(super) fn open_binary(
-    table: &toml::Table,
-    rate_hz: f64,
-    signal: Signal,
-) -> Result<Box<dyn Emulator>, SettingsError> {
-    let settings: HbmBinarySettings = settings(table)?;
+pub(super) fn open_binary(parts: Parts<'_>) -> Opened {
+    let (settings, pace, signal) = parts.read::<HbmBinarySettings>()?;
     let format = HbmFormat::new(settings.format, settings.checked)?;
-    Ok(Box::new(new(Vec::new(), Some(format), rate_hz, signal)))
+    Ok(Box::new(HbmDigitisers::new(Vec::new(), Some(format), pace, signal)))
 }
 
 impl HbmDigitisers {
+    fn new(stations: Vec<u8>, format: Option<HbmFormat>, pace: LinePace, signal: Signal) -> Self {
+        Self {
+            held: vec![None; stations.len().max(1)],
+            stations,
+            format,
+            pace,
+            signal,
+            heard: Heard::default(),
+            selected: None,
+            streaming: false,
+        }
+    }
+
     fn measured(&self, tag: usize, host_s: f64, faults: &Faults) -> f64 {
         if faults.saturated { -LIMIT } else { (self.signal)(tag, host_s).round() }
     }
@@ -119,10 +105,9 @@ impl HbmDigitisers {
 
 impl Emulator for HbmDigitisers {
     fn receive(&mut self, bytes: &[u8], now_s: f64, faults: &mut Faults, out: &mut Vec<u8>) {
-        self.heard.extend_from_slice(bytes);
-        while let Some(end) = self.heard.iter().position(|byte| *byte == b';' || *byte == b'\n') {
-            let command: Vec<u8> = self.heard.drain(..=end).collect();
-            let command = String::from_utf8_lossy(&command[..end]).trim().to_ascii_uppercase();
+        self.heard.extend(bytes);
+        while let Some(command) = self.heard.next(|byte| matches!(byte, b';' | b'\n')) {
+            let command = String::from_utf8_lossy(&command).trim().to_ascii_uppercase();
             // A lone terminator clears the input, and what is no command at all is refused.
             match command.get(..3) {
                 Some(_) if command.is_ascii() => self.obey(&command, now_s, faults, out),
@@ -130,8 +115,6 @@ impl Emulator for HbmDigitisers {
                 _ => out.extend(b"?\r\n"),
             }
         }
-        let excess = self.heard.len().saturating_sub(256);
-        self.heard.drain(..excess);
     }
 
     fn tick(&mut self, now_s: f64, faults: &mut Faults, out: &mut Vec<u8>) {

@@ -1,8 +1,8 @@
 //! Mantracourt digitisers on one line, answering MANTRABUS-II: DSC user manual pp. 53-54.
 
 use super::line_pace::LinePace;
-use super::{Emulator, Faults, Signal};
-use crate::driver::{MantrabusSettings, SettingsError, checksum, settings, to_nibbles};
+use super::{Emulator, Faults, Opened, Parts, Signal};
+use crate::driver::{MantrabusSettings, checksum, to_nibbles};
 
 const START: u8 = 0xFE;
 /// `FE`, station, command, two nibbles of check sum.
@@ -15,13 +15,8 @@ struct MantrabusCells {
     heard: Vec<u8>,
 }
 
-pub(super) fn open(
-    table: &toml::Table,
-    rate_hz: f64,
-    signal: Signal,
-) -> Result<Box<dyn Emulator>, SettingsError> {
-    let settings: MantrabusSettings = settings(table)?;
-    let pace = LinePace::new(rate_hz);
+pub(super) fn open(parts: Parts<'_>) -> Opened {
+    let (settings, pace, signal) = parts.read()?;
     Ok(Box::new(MantrabusCells { settings, pace, signal, heard: Vec::new() }))
 }
 

@@ -1,8 +1,9 @@
 //! Mantracourt digitisers on one line, answering ASCII: DSC user manual, appendix B.
 
+use super::heard::Heard;
 use super::line_pace::LinePace;
-use super::{Emulator, Faults, Signal};
-use crate::driver::{MantracourtSettings, SettingsError, settings};
+use super::{Emulator, Faults, Opened, Parts, Signal};
+use crate::driver::MantracourtSettings;
 
 const VERSION: u32 = 3 * 256 + 1;
 const STAT_OVER: u32 = 1 << 9;
@@ -14,25 +15,21 @@ struct MantracourtCells {
     settings: MantracourtSettings,
     pace: LinePace,
     signal: Signal,
-    heard: Vec<u8>,
+    heard: Heard,
     /// Conversion that each station delivered last.
     delivered: Vec<Option<u64>>,
     /// What each station holds since `SNAP`.
     snapshot: Vec<f64>,
 }
 
-pub(super) fn open(
-    table: &toml::Table,
-    rate_hz: f64,
-    signal: Signal,
-) -> Result<Box<dyn Emulator>, SettingsError> {
-    let settings: MantracourtSettings = settings(table)?;
+pub(super) fn open(parts: Parts<'_>) -> Opened {
+    let (settings, pace, signal) = parts.read::<MantracourtSettings>()?;
     let n_stations = settings.stations.len();
     Ok(Box::new(MantracourtCells {
         settings,
-        pace: LinePace::new(rate_hz),
+        pace,
         signal,
-        heard: Vec::new(),
+        heard: Heard::default(),
         delivered: vec![None; n_stations],
         snapshot: vec![0.0; n_stations],
     }))
@@ -88,10 +85,9 @@ fn number(value: f64) -> String {
 
 impl Emulator for MantracourtCells {
     fn receive(&mut self, bytes: &[u8], now_s: f64, faults: &mut Faults, out: &mut Vec<u8>) {
-        self.heard.extend_from_slice(bytes);
-        while let Some(end) = self.heard.iter().position(|byte| *byte == b'\r') {
-            let command: Vec<u8> = self.heard.drain(..=end).collect();
-            let answer = self.answer(&command[..end], now_s, faults);
+        self.heard.extend(bytes);
+        while let Some(command) = self.heard.next(|byte| byte == b'\r') {
+            let answer = self.answer(&command, now_s, faults);
             if faults.n_skips > 0 && answer.is_some() {
                 faults.n_skips -= 1;
                 continue;
@@ -101,8 +97,6 @@ impl Emulator for MantracourtCells {
                 out.push(b'\r');
             }
         }
-        let excess = self.heard.len().saturating_sub(256);
-        self.heard.drain(..excess);
     }
 
     fn tick(&mut self, _now_s: f64, _faults: &mut Faults, _out: &mut Vec<u8>) {}

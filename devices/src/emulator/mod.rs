@@ -4,21 +4,28 @@
 //! one line in [`EMULATORS`]. Faults come on command. The signals come from outside, so that a test
 //! can send a number and a simulated tank a roll.
 
+mod cable;
 mod cobs_board;
 mod dcon_module;
+mod emulated_port;
 mod faults;
 mod hbm_digitiser;
+mod heard;
 mod line_pace;
 mod mantrabus_cell;
 mod mantracourt_cell;
 mod modbus_transmitter;
-mod pty;
+mod openings;
 mod text_board;
 
+pub use emulated_port::{EmulatedPort, EmulatorError};
 pub use faults::{Fault, Faults};
-pub use pty::{EmulatedPort, EmulatorError};
 
-use crate::driver::SettingsError;
+use serde::de::DeserializeOwned;
+
+use line_pace::LinePace;
+
+use crate::driver::{SettingsError, settings};
 
 /// The raw value of a field [instrument's unit] at a time [s].
 pub type Signal = Box<dyn Fn(usize, f64) -> f64 + Send>;
@@ -35,14 +42,31 @@ pub const EMULATORS: [EmulatorEntry; 8] = [
     EmulatorEntry { driver: "cobs", open: cobs_board::open },
 ];
 
+/// What an emulator is made from.
+pub struct Parts<'p> {
+    settings: &'p toml::Table,
+    rate_hz: f64,
+    signal: Signal,
+}
+
+impl Parts<'_> {
+    /// The settings of the driver that it answers, its own clock, its signals.
+    fn read<S: DeserializeOwned>(self) -> Result<(S, LinePace, Signal), SettingsError> {
+        Ok((settings(self.settings)?, LinePace::new(self.rate_hz), self.signal))
+    }
+}
+
 /// How an emulator is made.
-pub type Open = fn(&toml::Table, f64, Signal) -> Result<Box<dyn Emulator>, SettingsError>;
+pub type Open = fn(Parts<'_>) -> Opened;
+
+/// An emulator, or what is wrong with the settings.
+pub type Opened = Result<Box<dyn Emulator>, SettingsError>;
 
 /// An emulator's line in [`EMULATORS`].
 pub struct EmulatorEntry {
     /// The driver that it answers.
     pub driver: &'static str,
-    /// Makes it from the driver's settings, its own conversion rate [Hz] and its signals.
+    /// Makes it.
     pub open: Open,
 }
 
@@ -50,15 +74,10 @@ pub struct EmulatorEntry {
 ///
 /// # Errors
 /// [`SettingsError`] for a driver without emulator, or for settings that it cannot work with.
-pub fn emulator(
-    driver: &str,
-    settings: &toml::Table,
-    rate_hz: f64,
-    signal: Signal,
-) -> Result<Box<dyn Emulator>, SettingsError> {
+pub fn emulator(driver: &str, settings: &toml::Table, rate_hz: f64, signal: Signal) -> Opened {
     let entry = EMULATORS.iter().find(|entry| entry.driver == driver);
     let entry = entry.ok_or_else(|| SettingsError(format!("nothing emulates \"{driver}\"")))?;
-    (entry.open)(settings, rate_hz, signal)
+    (entry.open)(Parts { settings, rate_hz, signal })
 }
 
 /// An instrument without I/O: bytes and time in, bytes out.

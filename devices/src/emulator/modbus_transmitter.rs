@@ -1,8 +1,8 @@
 //! Transmitters on one line that answer Modbus RTU functions 3 and 4.
 
 use super::line_pace::LinePace;
-use super::{Emulator, Faults, Signal};
-use crate::driver::{ModbusSettings, NumberType, SettingsError, modbus_crc, settings};
+use super::{Emulator, Faults, Opened, Parts, Signal};
+use crate::driver::{ModbusSettings, NumberType, modbus_crc};
 
 const REQUEST_BYTES: usize = 8;
 const ILLEGAL_ADDRESS: u8 = 2;
@@ -14,13 +14,8 @@ struct ModbusTransmitters {
     heard: Vec<u8>,
 }
 
-pub(super) fn open(
-    table: &toml::Table,
-    rate_hz: f64,
-    signal: Signal,
-) -> Result<Box<dyn Emulator>, SettingsError> {
-    let settings: ModbusSettings = settings(table)?;
-    let pace = LinePace::new(rate_hz);
+pub(super) fn open(parts: Parts<'_>) -> Opened {
+    let (settings, pace, signal) = parts.read()?;
     Ok(Box::new(ModbusTransmitters { settings, pace, signal, heard: Vec::new() }))
 }
 

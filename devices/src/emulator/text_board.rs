@@ -1,8 +1,8 @@
 //! A board that sends lines of text by a pattern, or answers with them.
 
 use super::line_pace::{Conversion, LinePace, send_due};
-use super::{Emulator, Faults, Signal};
-use crate::driver::{Pattern, PatternValues, SettingsError, TextLineSettings, settings};
+use super::{Emulator, Faults, Opened, Parts, Signal};
+use crate::driver::{Pattern, PatternValues, SettingsError, TextLineSettings};
 
 struct TextBoard {
     settings: TextLineSettings,
@@ -12,14 +12,9 @@ struct TextBoard {
     heard: Vec<u8>,
 }
 
-pub(super) fn open(
-    table: &toml::Table,
-    rate_hz: f64,
-    signal: Signal,
-) -> Result<Box<dyn Emulator>, SettingsError> {
-    let settings: TextLineSettings = settings(table)?;
+pub(super) fn open(parts: Parts<'_>) -> Opened {
+    let (settings, pace, signal) = parts.read::<TextLineSettings>()?;
     let pattern = Pattern::new(&settings.pattern, settings.decimal_comma).map_err(SettingsError)?;
-    let pace = LinePace::new(rate_hz);
     Ok(Box::new(TextBoard { settings, pattern, pace, signal, heard: Vec::new() }))
 }
 

@@ -1,6 +1,7 @@
 //! Serial ports: the only place that names `serialport`.
 
 mod by_id;
+mod link;
 mod reader;
 
 use std::io::{ErrorKind, Read, Write};
@@ -10,7 +11,8 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 pub use by_id::{FoundPort, adapter_latency_s, found_ports};
-pub use reader::{LinkEvent, LinkOptions, LinkReader};
+pub use link::{LinkEvent, LinkOptions};
+pub use reader::{LinkReader, LinkThread, Outlet};
 
 /// Longest wait for room to write [ms].
 const WRITE_TIMEOUT_MS: u64 = 200;

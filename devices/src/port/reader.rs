@@ -1,16 +1,18 @@
 //! One thread per port: opens, stamps, converses, notices loss, and comes back.
 
+use std::any::Any;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use super::{Arrival, Line, Port, PortFault, found_ports};
+use super::{Arrival, LinkEvent, LinkOptions, Port, PortFault, found_ports};
 use crate::clock::Clock;
-use crate::driver::{Decoded, Session};
+use crate::driver::Session;
 use crate::realtime::become_realtime;
 
 /// Longest wait for bytes before the port itself is looked at again; a hang-up ends it at once.
@@ -23,107 +25,63 @@ const SILENCE_NS: u64 = 1_000_000_000;
 const QUEUE_EVENTS: usize = 16_384;
 const READ_BYTES: usize = 4096;
 
-/// What happened on a link; `at_ns` is the host's clock.
-///
-/// Opened, sent, received, waited and lost are the raw record of a link: with their times and bytes
-/// alone a fresh session decodes the same again.
-#[derive(Debug, Clone, PartialEq)]
-pub enum LinkEvent {
-    /// The port is open.
-    Opened {
-        /// When.
-        at_ns: u64,
-    },
-    /// Bytes were sent.
-    Sent {
-        /// Just before they were written.
-        at_ns: u64,
-        /// The bytes.
-        bytes: Vec<u8>,
-        /// What was given up before.
-        decoded: Vec<Decoded>,
-    },
-    /// Bytes were received.
-    Received {
-        /// Right after the read, before any decoding.
-        at_ns: u64,
-        /// The bytes.
-        bytes: Vec<u8>,
-        /// What they said.
-        decoded: Vec<Decoded>,
-    },
-    /// Waiting ended without bytes.
-    Waited {
-        /// When.
-        at_ns: u64,
-        /// What was given up.
-        decoded: Vec<Decoded>,
-    },
-    /// The link is open, but not a byte came for a second; told once.
-    Silence {
-        /// When.
-        at_ns: u64,
-    },
-    /// The link is gone.
-    Lost {
-        /// When it was noticed.
-        at_ns: u64,
-        /// What was seen.
-        seen: String,
-    },
-    /// The port cannot be opened; told again only when the reason changes.
-    Absent {
-        /// When.
-        at_ns: u64,
-        /// Why.
-        fault: PortFault,
-        /// The ports that are there instead.
-        present: Vec<PathBuf>,
-    },
-    /// Events were dropped, because nobody took them.
-    Overflow {
-        /// How many.
-        n_events: u64,
-    },
+/// Takes what happened; whether there was room for it.
+pub type Outlet = Box<dyn FnMut(LinkEvent) -> bool + Send>;
+
+/// The thread of one port, which ends when it is dropped.
+pub struct LinkThread {
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
 }
 
-impl LinkEvent {
-    /// When it happened on the host's clock [ns]; none for a loss of events, which has no instant.
-    pub fn at_ns(&self) -> Option<u64> {
-        match self {
-            Self::Opened { at_ns }
-            | Self::Sent { at_ns, .. }
-            | Self::Received { at_ns, .. }
-            | Self::Waited { at_ns, .. }
-            | Self::Silence { at_ns }
-            | Self::Lost { at_ns, .. }
-            | Self::Absent { at_ns, .. } => Some(*at_ns),
-            Self::Overflow { .. } => None,
+impl LinkThread {
+    /// Starts the thread; it opens the port when that is there, and never waits for the outlet.
+    ///
+    /// # Errors
+    /// The system's error when it has no thread to give.
+    pub fn start(
+        options: LinkOptions,
+        session: Session,
+        clock: Arc<dyn Clock>,
+        outlet: Outlet,
+    ) -> std::io::Result<Self> {
+        let stop = Arc::new(AtomicBool::new(false));
+        let outlet = CountedOutlet { outlet, n_dropped: 0 };
+        let mut link = Link { options, session, clock, outlet, stop: Arc::clone(&stop) };
+        let thread = thread::Builder::new().name("port".to_owned()).spawn(move || {
+            if link.options.realtime {
+                // Where the system does not allow it, the thread is an ordinary one.
+                become_realtime();
+            }
+            link.serve();
+        })?;
+        Ok(Self { stop, thread: Some(thread) })
+    }
+
+    /// Asks the thread to close the port and to end, without waiting for it.
+    pub fn stop(&self) {
+        self.stop.store(true, Ordering::Release);
+    }
+}
+
+impl Drop for LinkThread {
+    fn drop(&mut self) {
+        self.stop();
+        if let Some(thread) = self.thread.take() {
+            // What panics in the thread is caught there.
+            drop(thread.join());
         }
     }
 }
 
-/// Where and how a link is made.
-#[derive(Debug, Clone)]
-pub struct LinkOptions {
-    /// Stable name of the port.
-    pub path: PathBuf,
-    /// Its settings.
-    pub line: Line,
-    /// `SCHED_FIFO` for the thread, when the system allows it.
-    pub realtime: bool,
-}
-
-/// The thread of one port, and the queue of what happened on it.
+/// The thread of one port, and a queue of what happened on it.
 pub struct LinkReader {
     events: Receiver<LinkEvent>,
-    stop: Arc<AtomicBool>,
-    realtime: Arc<AtomicBool>,
-    thread: Option<JoinHandle<()>>,
+    _thread: LinkThread,
 }
 
 impl LinkReader {
-    /// Starts the thread; it opens the port when that is there.
+    /// Starts the thread, as [`LinkThread::start`] does.
     ///
     /// # Errors
     /// The system's error when it has no thread to give.
@@ -133,78 +91,28 @@ impl LinkReader {
         clock: Arc<dyn Clock>,
     ) -> std::io::Result<Self> {
         let (sender, events) = sync_channel(QUEUE_EVENTS);
-        let stop = Arc::new(AtomicBool::new(false));
-        let realtime = Arc::new(AtomicBool::new(false));
-        let mut link = Link {
-            options,
-            session,
-            clock,
-            outlet: Outlet { sender, n_dropped: 0 },
-            stop: Arc::clone(&stop),
-        };
-        let is_realtime = Arc::clone(&realtime);
-        let thread = thread::Builder::new().name("port".to_owned()).spawn(move || {
-            if link.options.realtime {
-                is_realtime.store(become_realtime(), Ordering::Release);
-            }
-            link.run();
-        })?;
-        Ok(Self { events, stop, realtime, thread: Some(thread) })
+        let outlet = Box::new(move |event| sender.try_send(event).is_ok());
+        Ok(Self { events, _thread: LinkThread::start(options, session, clock, outlet)? })
     }
 
     /// The next event, waited for at most so long.
     pub fn next(&self, wait: Duration) -> Option<LinkEvent> {
         self.events.recv_timeout(wait).ok()
     }
-
-    /// Whether the port's thread has ended, which it does by itself only when it panics.
-    pub fn is_over(&self) -> bool {
-        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
-    }
-
-    /// Closes the port and gives the events that nobody has taken.
-    pub fn close(mut self) -> Vec<LinkEvent> {
-        self.end();
-        self.events.try_iter().collect()
-    }
-
-    fn end(&mut self) {
-        self.stop.store(true, Ordering::Release);
-        if let Some(thread) = self.thread.take() {
-            // A panic of the thread was already told by its own message.
-            drop(thread.join());
-        }
-    }
-
-    /// Whether the thread runs under `SCHED_FIFO`.
-    pub fn is_realtime(&self) -> bool {
-        self.realtime.load(Ordering::Acquire)
-    }
 }
 
-impl Drop for LinkReader {
-    fn drop(&mut self) {
-        self.end();
-    }
-}
-
-/// The sending end of the queue, which never blocks the reader.
-struct Outlet {
-    sender: SyncSender<LinkEvent>,
+/// An outlet that tells how much found no room in it, as soon as there is some.
+struct CountedOutlet {
+    outlet: Outlet,
     n_dropped: u64,
 }
 
-impl Outlet {
+impl CountedOutlet {
     fn send(&mut self, event: LinkEvent) {
-        if self.n_dropped > 0 {
-            let overflow = LinkEvent::Overflow { n_events: self.n_dropped };
-            if self.sender.try_send(overflow).is_err() {
-                self.n_dropped += 1;
-                return;
-            }
+        if self.n_dropped > 0 && (self.outlet)(LinkEvent::Overflow { n_events: self.n_dropped }) {
             self.n_dropped = 0;
         }
-        if let Err(TrySendError::Full(_)) = self.sender.try_send(event) {
+        if self.n_dropped > 0 || !(self.outlet)(event) {
             self.n_dropped += 1;
         }
     }
@@ -214,11 +122,20 @@ struct Link {
     options: LinkOptions,
     session: Session,
     clock: Arc<dyn Clock>,
-    outlet: Outlet,
+    outlet: CountedOutlet,
     stop: Arc<AtomicBool>,
 }
 
 impl Link {
+    /// Runs until it is stopped; after a panic, which is told as a loss of the link, anew.
+    fn serve(&mut self) {
+        // The next opening starts the session anew, and nothing else outlives a conversation.
+        while let Err(panic) = catch_unwind(AssertUnwindSafe(|| self.run())) {
+            self.lost(format!("reading it failed: {}", words_of(panic.as_ref())));
+            self.rest();
+        }
+    }
+
     fn run(&mut self) {
         let mut told: Option<PortFault> = None;
         while !self.stopped() {
@@ -319,6 +236,12 @@ impl Link {
         let at_ns = self.clock.now_ns();
         self.outlet.send(LinkEvent::Lost { at_ns, seen });
     }
+}
+
+/// What a panic said.
+fn words_of(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("a panic without words")
 }
 
 fn seen_at(path: &Path) -> String {

@@ -1,6 +1,6 @@
 //! The part file while it grows: groups of records appended whole, or taken back.
 
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -29,11 +29,15 @@ impl Journal {
         let opened = options.read(true).append(true).create_new(true).open(path);
         let mut file = opened.map_err(|source| match source.kind() {
             io::ErrorKind::AlreadyExists => ReplayError::Exists { path: path.to_owned() },
-            _ => ReplayError::write(path, source),
+            _ => ReplayError::written(path, 0, source),
         })?;
         lock(&file, path)?;
         let start = preamble();
-        disk.append(&mut file, &start).map_err(|source| ReplayError::write(path, source))?;
+        if let Err(source) = disk.append(&mut file, &start) {
+            // A part without its beginning is nobody's.
+            drop(fs::remove_file(path));
+            return Err(ReplayError::written(path, 0, source));
+        }
         let written_bytes = start.len() as u64;
         let (path, group) = (path.to_owned(), vec![0; GROUP_HEADER_BYTES]);
         Ok(Self { path, disk, file, syncer: None, group, groups: 0, written_bytes })
@@ -76,10 +80,11 @@ impl Journal {
 
     /// Asks for the disk to keep what was handed to the system, and tells of an earlier failure.
     pub(crate) fn ask_to_keep(&mut self) -> io::Result<()> {
-        if self.syncer.is_none() {
-            self.syncer = Some(Syncer::start(&self.file)?);
-        }
-        let syncer = self.syncer.as_ref().expect("it was started just above");
+        let syncer = match self.syncer.take() {
+            Some(syncer) => syncer,
+            None => Syncer::start(&self.file)?,
+        };
+        let syncer = self.syncer.insert(syncer);
         syncer.ask();
         syncer.failure().map_or(Ok(()), Err)
     }

@@ -2,6 +2,7 @@
 
 mod chain;
 mod coefficients;
+mod counted;
 mod equivalent_damping;
 mod extinction;
 mod facts;
@@ -28,10 +29,11 @@ use crate::results::{IdentifiedRun, Overview, RejectedStretch};
 use crate::run::RunKind;
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&RunPage) -> Option<Markup>; 18] = [
+const PARTS: [fn(&RunPage) -> Option<Markup>; 19] = [
     law_gaps::part,
     facts::part,
     record::part,
+    counted::part,
     roll::part,
     moment::part,
     scatter::part,

@@ -1,32 +1,20 @@
-//! A pseudo-terminal with an emulated instrument at its other end, under a name that can vanish.
+//! An emulated instrument at the other end of a port, in a thread of its own.
 
 use std::collections::VecDeque;
-use std::ffi::OsStr;
-use std::fs::{self, File, OpenOptions};
 use std::io;
-use std::os::fd::OwnedFd;
-use std::os::unix::ffi::OsStrExt;
-use std::os::unix::fs::{OpenOptionsExt, symlink};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use rustix::fs::{OFlags, fcntl_setfl};
-use rustix::io::Errno;
-use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
-use rustix::termios::{OptionalActions, ioctl_tiocnxcl, tcgetattr, tcsetattr};
-
+use super::cable::Cable;
 use super::{Emulator, Fault, Faults};
 use crate::clock::{Clock, NS_PER_S};
 use crate::realtime::become_realtime;
 
 /// Longest sleep of the thread [ns]; a line is at most so late.
 const TURN_NS: i64 = 500_000;
-/// A full terminal is waited for so long, before its reader is given up [ns].
-const PATIENCE_NS: i64 = 300_000_000;
 
 /// The system gives no pseudo-terminal.
 #[derive(Debug, thiserror::Error)]
@@ -122,80 +110,6 @@ impl Drop for EmulatedPort {
     }
 }
 
-/// A pseudo-terminal and its name.
-struct Cable {
-    path: PathBuf,
-    master: OwnedFd,
-    /// Held open, since the other end would read errors between two openings of the port.
-    slave: File,
-    /// Somebody takes what is written.
-    is_read: bool,
-}
-
-impl Cable {
-    fn plug_in(path: &Path) -> io::Result<Self> {
-        let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
-        grantpt(&master)?;
-        unlockpt(&master)?;
-        fcntl_setfl(&master, OFlags::RDWR | OFlags::NONBLOCK)?;
-        let name = ptsname(&master, Vec::new())?;
-        let name = Path::new(OsStr::from_bytes(name.to_bytes())).to_owned();
-        let no_control = i32::try_from(OFlags::NOCTTY.bits()).unwrap_or_default();
-        let mut open = OpenOptions::new();
-        let slave = open.read(true).write(true).custom_flags(no_control).open(&name)?;
-        // A terminal that is not raw echoes the instrument's own words back to it.
-        let mut settings = tcgetattr(&slave)?;
-        settings.make_raw();
-        tcsetattr(&slave, OptionalActions::Now, &settings)?;
-        if path.is_symlink() {
-            fs::remove_file(path)?;
-        }
-        symlink(&name, path)?;
-        Ok(Self { path: path.to_owned(), master, slave, is_read: true })
-    }
-
-    /// What the host sent.
-    fn read(&self) -> Vec<u8> {
-        let mut bytes = vec![0; 4096];
-        let n_bytes = rustix::io::read(&self.master, &mut bytes[..]).unwrap_or(0);
-        bytes.truncate(n_bytes);
-        bytes
-    }
-
-    /// Bytes that nobody reads are lost, as on a line; a reader that is only slow is waited for.
-    fn write(&mut self, bytes: &[u8]) {
-        let mut rest = bytes;
-        while !rest.is_empty() {
-            match rustix::io::write(&self.master, rest) {
-                Ok(n_bytes) => {
-                    rest = &rest[n_bytes..];
-                    self.is_read = true;
-                }
-                Err(Errno::AGAIN) if self.is_read => {
-                    let patience = Timespec { tv_sec: 0, tv_nsec: PATIENCE_NS };
-                    let mut ready = [PollFd::new(&self.master, PollFlags::OUT)];
-                    self.is_read = poll(&mut ready, Some(&patience)).is_ok_and(|n| n > 0);
-                }
-                Err(_) => return,
-            }
-        }
-    }
-
-    /// Waits for bytes from the host at most so long [ns].
-    fn wait(&self, wait_ns: i64) {
-        let turn = Timespec { tv_sec: 0, tv_nsec: wait_ns };
-        let mut ready = [PollFd::new(&self.master, PollFlags::IN)];
-        // Whatever ends the wait, the loop looks at everything again.
-        poll(&mut ready, Some(&turn)).ok();
-    }
-}
-
-impl Drop for Cable {
-    fn drop(&mut self) {
-        drop(fs::remove_file(&self.path));
-    }
-}
-
 struct Bench {
     path: PathBuf,
     cable: Option<Cable>,
@@ -252,8 +166,7 @@ impl Bench {
             if !bytes.is_empty() {
                 self.emulator.receive(&bytes, now_s, &mut self.faults, &mut out);
             }
-            // A program that was killed leaves its mark of exclusive use on the terminal.
-            ioctl_tiocnxcl(&cable.slave).ok();
+            cable.release();
         }
         self.emulator.tick(now_s, &mut self.faults, &mut out);
         if !out.is_empty() && !self.faults.mute {
@@ -267,8 +180,11 @@ impl Bench {
             && let Some((_, bytes)) = self.on_line.pop_front_if(|(due_ns, _)| *due_ns <= now_ns)
         {
             if let Some(cable) = &mut self.cable {
-                cable.write(&bytes);
+                cable.send(&bytes);
             }
+        }
+        if let Some(cable) = &mut self.cable {
+            cable.pass_on();
         }
         match &self.cable {
             Some(cable) => {

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use devices::channel::Counts;
+use super::Counts;
 
 /// Longest run, with what may pass until its end is known [s].
 const KEPT_S: f64 = 2100.0;
@@ -10,14 +10,14 @@ const KEPT_S: f64 = 2100.0;
 const STEP_S: f64 = 0.02;
 
 /// What a channel's counts were, and when.
-#[derive(Debug, Default)]
-pub(super) struct Tally {
+#[derive(Debug, Clone, Default)]
+pub struct Tally {
     entries: VecDeque<(f64, Counts)>,
 }
 
 impl Tally {
     /// The counts after the sample at `time_s`.
-    pub(super) fn note(&mut self, time_s: f64, counts: Counts) {
+    pub fn note(&mut self, time_s: f64, counts: Counts) {
         match self.entries.back_mut() {
             Some((last_s, last)) if time_s - *last_s < STEP_S => *last = counts,
             _ => self.entries.push_back((time_s, counts)),
@@ -28,7 +28,7 @@ impl Tally {
     }
 
     /// What was counted from `start_s` to `end_s`.
-    pub(super) fn between(&self, start_s: f64, end_s: f64) -> Counts {
+    pub fn between(&self, start_s: f64, end_s: f64) -> Counts {
         let until = |time_s: f64| {
             let n = self.entries.partition_point(|(at_s, _)| *at_s <= time_s);
             n.checked_sub(1).map(|last| self.entries[last].1).unwrap_or_default()
