@@ -90,7 +90,7 @@ function line({ judgement, stands }) {
   text.textContent = `${judgement.number}. ${judgement.at} ${judgement.by} ${WORDS[what]}${about}${why}`
     + (stands ? "" : " (undone)");
   row.append(text);
-  if (stands && what !== "undo") {
+  if (stands) {
     const button = document.createElement("button");
     button.type = "button";
     button.dataset.act = "undo";

@@ -26,8 +26,8 @@ use tokio::time::{MissedTickBehavior, interval};
 use super::state::state;
 use crate::page::board::Board;
 
-/// How often strips are sent: thirty times a second, with a timer that is a little late.
-const FRAME: Duration = Duration::from_millis(32);
+/// How often strips are sent: more than thirty times a second, with a timer that is a little late.
+const FRAME: Duration = Duration::from_millis(30);
 /// Frames from one look at the state to the next, and to the one that is sent though nothing but
 /// time has passed.
 const FRAMES_PER_LOOK: u32 = 3;

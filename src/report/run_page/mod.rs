@@ -21,7 +21,7 @@ mod scatter;
 
 use maud::{Markup, html};
 
-use super::{document, field_units::FieldUnits, glossary};
+use super::{document, field_units::FieldUnits, glossary, judged_run};
 use crate::campaign::Campaign;
 use crate::inverse::identification::Identification;
 use crate::results::{IdentifiedRun, Overview, RejectedStretch};
@@ -88,6 +88,7 @@ pub(super) fn html(
         p.lead {
             (campaign.name) " · " (run.condition) " · " a href="index.html" { "campaign report" }
         }
+        (judged_run::place(None, &[]))
         @for part in PARTS {
             @if let Some(part) = part(&page) { (part) }
         }
