@@ -39,7 +39,8 @@ fn a_rejected_run_is_no_run_until_that_is_undone_and_its_page_stays() {
     assert_eq!((&rejected["run"], &rejected["end_s"]), (&run["id"], &run["end_s"]));
     assert_eq!(rolltank(campaign.path(), &["replay", "."]).exit, 3);
     let page = format!("results/run-{}.html", run["id"].as_str().expect("an id"));
-    let page = || std::fs::read_to_string(campaign.path().join(&page)).expect("it can be looked at");
+    let page =
+        || std::fs::read_to_string(campaign.path().join(&page)).expect("it can be looked at");
     assert!(page().contains(&format!("This run is {reason}")), "its own page says so");
     let diagnosis = rolltank(campaign.path(), &["diagnose", ".", "--json"]);
     let diagnosis: Value = serde_json::from_str(&diagnosis.out).expect("JSON");

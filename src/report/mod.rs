@@ -26,7 +26,7 @@ mod whole_file;
 use std::path::{Path, PathBuf};
 
 pub use appendix::{Appendix, AttachedInstrument, ChannelCalibration, RecordedFile};
-pub use book::book;
+pub use book::{Extent, book};
 pub use damping_table::damping_table;
 pub use diagnosis_json::{DIAGNOSIS_SCHEMA, diagnosis_json};
 pub use diagnosis_text::diagnosis_text;

@@ -179,12 +179,11 @@ fn undo(served: &Served, judgements: &Judgements, of: u64, by: &str) -> Result<O
             put(&served.folder, channels).map_err(conflict)?;
             Ok(Order::Reload)
         }
-        (Deed::Reject { run }, true) => {
-            reject(judgements, run.clone()).map(|_| Order::TellAgain)
-        }
-        (Deed::Mark { .. } | Deed::Annotate { .. } | Deed::Reject { .. } | Deed::Undo { .. }, _) => {
-            Ok(Order::TellAgain)
-        }
+        (Deed::Reject { run }, true) => reject(judgements, run.clone()).map(|_| Order::TellAgain),
+        (
+            Deed::Mark { .. } | Deed::Annotate { .. } | Deed::Reject { .. } | Deed::Undo { .. },
+            _,
+        ) => Ok(Order::TellAgain),
     }
 }
 
@@ -201,9 +200,7 @@ fn require_newest(
         _ => false,
     };
     match judgements.in_force().iter().find(is_newer) {
-        Some(newer) => {
-            Err(conflict(format!("zero {} came later: undo that first", newer.number)))
-        }
+        Some(newer) => Err(conflict(format!("zero {} came later: undo that first", newer.number))),
         None => Ok(()),
     }
 }
