@@ -55,7 +55,9 @@ impl Drawn {
                 }
             }
         }
-        comparisons(&results)
+        // The made-up decays have one damping at every amplitude.
+        let all = comparisons(&results).into_iter();
+        all.filter(|at| (at.amplitude_deg - 5.0).abs() < 1e-9).collect()
     }
 }
 

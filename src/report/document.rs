@@ -101,9 +101,8 @@ pub(super) fn estimate_cell(estimate: Option<&Estimate>) -> Markup {
 /// The same with at most four significant digits of the mean, for a table read at a glance.
 pub(super) fn short_estimate_cell(estimate: Option<&Estimate>) -> Markup {
     let Some(estimate) = estimate else { return estimate_cell(None) };
-    let text = typeset(&number::estimate_within(estimate, 4));
-    let (mean, interval) = text.split_once(' ').unwrap_or((&text, ""));
-    html! { td.number.stacked { (mean) " " span.interval { (interval) } } }
+    let (mean, interval) = number::parts_within(estimate, 4);
+    html! { td.number.stacked { (typeset(&mean)) " " span.interval { (typeset(&interval)) } } }
 }
 
 /// A cell with a number that is already rounded.

@@ -135,7 +135,7 @@ impl<'a> RunJson<'a> {
             inertia_used_kg_m2: units.inertia_kg_m2(),
             forced: identification.forced.as_ref().map(ForcedJson::new),
             chain: identification.chain.as_ref().map(ChainJson::new),
-            gates: procedure::of_run(run),
+            gates: procedure::of_run(campaign, run),
             remarks: &identification.remarks,
         }
     }

@@ -40,8 +40,9 @@ await story(async (browser) => {
   await show(page, "now");
   await recordingStopsAndStarts(page);
 
+  const reports = await reportsAreFit(browser, page);
   await page.evaluate(() => document.dispatchEvent(new Event("toggle-theme")));
-  const bad = [];
+  const bad = reports;
   for (const theme of ["dark", "light"]) {
     for (const view of VIEWS) {
       await show(page, view);
@@ -53,6 +54,25 @@ await story(async (browser) => {
   assert.deepEqual(bad, [], "axe");
   assert.deepEqual([...page.complaints, ...second.complaints], [], "console");
 });
+
+// The report's own pages, as the daemon serves them, in light and dark.
+async function reportsAreFit(browser, page) {
+  const { runs: [run] } = await identified(page);
+  const bad = [];
+  for (const colorScheme of ["light", "dark"]) {
+    const report = await open(browser, { colorScheme }, `http://${address}/results/index.html`);
+    const ground = await report.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    assert.equal(ground === "rgb(255, 255, 255)", colorScheme === "light", ground);
+    for (const name of ["index.html", "diagnosis.html", `run-${run}.html`]) {
+      await report.goto(`http://${address}/results/${name}`);
+      assert(await report.locator("h1").count() === 1, name);
+      bad.push(...(await unfit(report)).map((told) => `${name}, ${colorScheme}: ${told}`));
+    }
+    assert.deepEqual(report.complaints, [], "console of the report");
+    await report.context().close();
+  }
+  return bad;
+}
 
 function alarms(page) {
   return page.locator("#alarms .alarm");

@@ -16,6 +16,7 @@ mod observable;
 mod record;
 mod remarks;
 mod resimulation;
+mod result;
 mod roll;
 mod scatter;
 
@@ -88,6 +89,7 @@ pub(super) fn html(
         p.lead {
             (campaign.name) " · " (run.condition) " · " a href="index.html" { "campaign report" }
         }
+        (result::line(&page))
         (judged_run::place(None, &[]))
         @for part in PARTS {
             @if let Some(part) = part(&page) { (part) }
