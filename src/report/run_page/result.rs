@@ -8,7 +8,7 @@ use crate::report::notation;
 use crate::report::number::{parts_within, significant};
 
 /// Significant digits of each mean.
-const N_DIGITS: usize = 4;
+const N_DIGITS: i32 = 4;
 
 pub(super) fn line(page: &RunPage) -> Markup {
     let (units, identification) = (page.field_units(), page.identification());
