@@ -131,7 +131,8 @@ mod tests {
     #[test]
     fn an_excerpt_is_the_title_and_the_resimulation() {
         let page = "<h1>Run a</h1><section id=\"facts\">much</section>\
-            <section id=\"resimulation-section\">this</section><section id=\"gates\">more</section>";
+            <section id=\"resimulation-section\">this</section>\
+            <section id=\"gates\">more</section>";
         let wanted = "<h1>Run a</h1><section id=\"resimulation-section\">this</section>";
         assert_eq!(excerpt(page), wanted);
         assert_eq!(excerpt("<h1>Run a</h1>"), "<h1>Run a</h1>");

@@ -27,7 +27,8 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
         ("", ""),
     ];
     let caption = "b_{eq} of the second condition less that of the first at roll amplitude A, \
-                   from the free decays that reach it, and the posterior probability that it is larger.";
+                   from the free decays that reach it, and the posterior probability that it is \
+                   larger.";
     Some(section(
         "compared",
         "Conditions compared",
