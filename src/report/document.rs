@@ -67,7 +67,9 @@ pub(super) type Column<'a> = (&'a str, &'a str);
 pub(super) fn table(id: &str, caption: &str, columns: &[Column], rows: &[Markup]) -> Markup {
     html! {
         // A table that fits on a page is not cut; the head of a longer one is printed again.
-        div.table.whole[rows.len() <= ROWS_ON_A_PAGE] {
+        // One that is wider than its window is scrolled, by keys too.
+        div.table.whole[rows.len() <= ROWS_ON_A_PAGE]
+            tabindex="0" role="region" aria-label=(label(caption)) {
             table id=(id) {
                 caption { (notation::html(caption)) }
                 thead { tr {
@@ -82,6 +84,12 @@ pub(super) fn table(id: &str, caption: &str, columns: &[Column], rows: &[Markup]
             }
         }
     }
+}
+
+/// What a screen reader calls a table: the first sentence of its caption.
+fn label(caption: &str) -> String {
+    let end = caption.find(['.', ':', ';', ',']).unwrap_or(caption.len());
+    notation::plain(&caption[..end])
 }
 
 /// A cell with an estimate, its interval on the line below.

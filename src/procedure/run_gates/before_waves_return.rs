@@ -20,6 +20,9 @@ pub(super) fn answer(Asked { campaign, run }: &Asked<'_>) -> Option<Answer> {
     let found = &run.run;
     let natural_rad_s = run.identification.natural_frequency_rad_s.mean;
     let frequency_rad_s = found.excitation_rad_s.unwrap_or(natural_rad_s);
+    if !frequency_rad_s.is_finite() {
+        return Some(Answer::untold(GATE, "the frequency of the roll is not known"));
+    }
     let gravity_m_s2 = campaign.water.gravity_m_s2;
     let Some(width_m) = campaign.tank.width_m else {
         return Some(Answer::untold(GATE, "width_m is not given in [tank] of campaign.toml"));
