@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::AMPLITUDES_DEG;
 use super::repeats::{damping, decays};
 use crate::inverse::estimate::Estimate;
 use crate::inverse::scattered::{Node, combination, never_nil, nodes, probability_positive};
@@ -39,10 +40,6 @@ pub struct Comparison {
     /// Where the scatter from run to run is known from.
     pub basis: Basis,
 }
-
-/// Roll amplitudes at which conditions are compared [deg]: of those that every run reports, the
-/// small, the usual, the large.
-const AMPLITUDES_DEG: [f64; 4] = [2.0, 5.0, 10.0, 15.0];
 
 /// Degrees of freedom from which repeats alone tell the scatter.
 const N_FREE: usize = 3;

@@ -28,12 +28,17 @@ pub struct Repeats {
     pub damping_per_s: Option<Estimate>,
 }
 
-/// Decays of each condition at each speed, in order.
+/// Decays of each condition at each speed, in order, at the amplitude of comparison.
 pub fn repeats(results: &Results) -> Vec<Repeats> {
+    repeats_at(results, COMPARISON_DEG)
+}
+
+/// The same at an amplitude [deg], of the decays that reach it.
+pub(super) fn repeats_at(results: &Results, amplitude_deg: f64) -> Vec<Repeats> {
     let mut all = Vec::new();
     for condition in results.conditions() {
-        for runs in by_speed(decays(results, condition, COMPARISON_DEG)) {
-            all.extend(of(condition, &runs));
+        for runs in by_speed(decays(results, condition, amplitude_deg)) {
+            all.extend(of(condition, &runs, amplitude_deg));
         }
     }
     all
@@ -59,12 +64,9 @@ pub(super) fn damping(run: &IdentifiedRun, amplitude_deg: f64) -> Option<Estimat
     (is_told && damping.mean.is_finite() && damping.sd.is_finite()).then_some(damping)
 }
 
-fn of(condition: &str, runs: &[&IdentifiedRun]) -> Option<Repeats> {
-    let values: Vec<(f64, f64)> = runs
-        .iter()
-        .filter_map(|run| damping(run, COMPARISON_DEG))
-        .map(|b| (b.mean, b.sd))
-        .collect();
+fn of(condition: &str, runs: &[&IdentifiedRun], amplitude_deg: f64) -> Option<Repeats> {
+    let values: Vec<(f64, f64)> =
+        runs.iter().filter_map(|run| damping(run, amplitude_deg)).map(|b| (b.mean, b.sd)).collect();
     let n = values.len() as f64;
     if values.is_empty() {
         return None;
@@ -80,7 +82,7 @@ fn of(condition: &str, runs: &[&IdentifiedRun]) -> Option<Repeats> {
     Some(Repeats {
         condition: condition.to_owned(),
         froude: runs.iter().map(|run| run.froude).sum::<f64>() / runs.len() as f64,
-        amplitude_deg: COMPARISON_DEG,
+        amplitude_deg,
         runs: runs.iter().map(|run| run.id.clone()).collect(),
         mean_per_s,
         run_to_run_per_s: repeated.then(|| (squares / (n - 1.0)).sqrt()),
