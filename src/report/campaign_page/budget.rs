@@ -28,8 +28,8 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
         ("U B̂₄₄", "%"),
     ];
     let caption = "Standard uncertainties of the mean b_{eq} of n decays at roll amplitude A in \
-                   1/s, type A or B, u all of them together; U = k u as a share of the value, k for 95 % with \
-                   the effective degrees of freedom.";
+                   1/s, type A or B, u all of them together; U = k u as a share of the value, k \
+                   for 95 % with the effective degrees of freedom.";
     let rows: Vec<Markup> = all.iter().map(row).collect();
     let equations: Vec<Markup> = EQUATIONS
         .iter()
