@@ -113,6 +113,8 @@ fn measured(board: &Board, is_over: &dyn Fn() -> bool) -> Result<Vec<Figure>, Li
         n_looks += 1;
         thread::sleep(LOOK);
     };
+    // How the board is taken up is measured by the stories of the daemon.
+    let before = samples(board);
     let mut figures = Vec::new();
     let mut tell = |pages: String, share: f64| {
         let name = format!("daemon with a board of 8 fields at 1 kHz, {pages}: processor time");
@@ -124,13 +126,18 @@ fn measured(board: &Board, is_over: &dyn Fn() -> bool) -> Result<Vec<Figure>, Li
     let stalled = stalled(address).map_err(system)?;
     tell("10 pages and one that stalls".to_owned(), cost(address, 10).map_err(system)?.share);
     drop(stalled);
-    let status = board.now();
-    let devices = || status.devices.iter();
-    let channels = || devices().flat_map(|device| &device.channels);
-    let received: u64 = channels().map(|channel| channel.counts.received).sum();
-    let lost: u64 = channels().map(|channel| channel.counts.lost + channel.counts.damaged).sum();
-    let dropped: u64 = devices().map(|device| device.n_dropped + device.n_gaps).sum();
+    let after = samples(board);
     let name = "meanwhile, of the samples of its three channels: lost or damaged".to_owned();
-    figures.push(figure(name, format!("{} of {received}", lost + dropped)));
+    let [received, lost] = [0, 1].map(|k| after[k] - before[k]);
+    figures.push(figure(name, format!("{lost} of {}", received + lost)));
     Ok(figures)
+}
+
+/// Samples of every channel so far: received, and lost on the way or damaged.
+fn samples(board: &Board) -> [u64; 2] {
+    let status = board.now();
+    let channels = || status.devices.iter().flat_map(|device| &device.channels);
+    let received = channels().map(|channel| channel.counts.received).sum();
+    let lost = channels().map(|channel| channel.counts.lost + channel.counts.damaged).sum();
+    [received, lost]
 }

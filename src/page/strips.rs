@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 use std::fmt::Write as _;
 
-/// Stretches a second [1/s] of the world's time: so many that no frame finds none.
+/// Stretches a second [1/s] of the world's time: one for each frame that is sent.
 const PER_S: f64 = 40.0;
 /// Longest stretch [s]: on a clock that runs faster than the world's a roll period stays one.
 const LONGEST_S: f64 = 0.1;

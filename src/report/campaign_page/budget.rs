@@ -71,7 +71,7 @@ fn row(budget: &Budget) -> Markup {
     html! {
         td { (budget.condition) }
         (number_cell(&fixed(budget.froude, 3)))
-        (number_cell(&significant(budget.amplitude_deg, 3)))
+        (number_cell(&fixed(budget.amplitude_deg, 0)))
         (number_cell(&budget.n_runs.to_string()))
         (number_cell(&significant(budget.damping_per_s, 4)))
         (number_cell(&known(Some(budget.noise_per_s))))

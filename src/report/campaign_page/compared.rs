@@ -51,7 +51,7 @@ fn notes(all: &[Comparison]) -> Vec<String> {
     }
     let is_one = amplitudes_deg.len() == 1;
     let note = |(basis, at): (Basis, Vec<f64>)| {
-        let at: Vec<String> = at.into_iter().map(|deg| significant(deg, 3)).collect();
+        let at: Vec<String> = at.into_iter().map(|deg| fixed(deg, 0)).collect();
         let place = if is_one { String::new() } else { format!("At {} deg: ", at.join(", ")) };
         place + told(basis)
     };
@@ -85,7 +85,7 @@ fn row(at: &Comparison) -> Markup {
     };
     html! {
         td { (at.second) " against " (at.first) }
-        (number_cell(&significant(at.amplitude_deg, 3)))
+        (number_cell(&fixed(at.amplitude_deg, 0)))
         (number_cell(&fixed(at.froude, 3)))
         (estimate_cell(at.difference_per_s.as_ref()))
         (short_estimate_cell(at.difference_share.map(|share| share.scaled(100.0)).as_ref()))
