@@ -123,12 +123,12 @@ fn conditions_that_part_only_at_large_amplitudes_are_parted_there_as_far_as_deca
     for (condition, large_per_s) in [("bare hull", 0.4), ("bilge keels", 0.6)] {
         for share in [0.97, 0.99, 1.01, 1.03] {
             let mut run = run(condition, 0.2, 0.4 * share);
-            let at_five = run.identification.equivalent_damping[0].clone();
+            let at_five = run.identification.equivalent_damping[0];
             let at = |amplitude_deg: f64| {
                 let mean = share * if amplitude_deg > 6.0 { large_per_s } else { 0.4 };
                 let fitted_per_s = Estimate::normal(mean, 0.01 * mean);
                 let extrapolated = amplitude_deg > 12.0;
-                EquivalentDamping { amplitude_deg, fitted_per_s, extrapolated, ..at_five.clone() }
+                EquivalentDamping { amplitude_deg, fitted_per_s, extrapolated, ..at_five }
             };
             run.identification.equivalent_damping = [2.0, 5.0, 10.0, 15.0].map(at).to_vec();
             results.runs.push(run);
