@@ -174,7 +174,7 @@ mod tests {
         assert_eq!(strips.channels[0].waiting.len(), WAITING);
         assert_eq!(strips.channels[0].past.len(), PAST_KEPT);
         let text = strips.fetch().expect("the newest");
-        assert!(text.starts_with("{\"t\":1982,"), "{}", &text[..40]);
+        assert!(text.starts_with("{\"t\":1987,"), "{}", &text[..40]);
     }
 
     #[test]
