@@ -35,8 +35,13 @@ pub const COMPARISON_DEG: f64 = 5.0;
 impl IdentifiedRun {
     /// Equivalent damping at the amplitude at which runs are compared, if the run gives one.
     pub fn at_comparison(&self) -> Option<&EquivalentDamping> {
+        self.at(COMPARISON_DEG)
+    }
+
+    /// Equivalent damping at one of the contract's amplitudes [deg], if the run gives one.
+    pub fn at(&self, amplitude_deg: f64) -> Option<&EquivalentDamping> {
         let all = &self.identification.equivalent_damping;
-        all.iter().find(|at| (at.amplitude_deg - COMPARISON_DEG).abs() < 1e-9)
+        all.iter().find(|at| (at.amplitude_deg - amplitude_deg).abs() < 1e-9)
     }
 }
 

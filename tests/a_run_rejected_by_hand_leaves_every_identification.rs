@@ -34,17 +34,31 @@ fn a_rejected_run_is_no_run_until_that_is_undone_and_its_page_stays() {
     assert_eq!(judged["runs"], Value::Array(Vec::new()));
     assert_eq!(judged["froude_law"], Value::Array(Vec::new()));
     let rejected = judged["rejected"].as_array().expect("a list").last().expect("the run");
-    assert_eq!(rejected["reason"], "rejected by hand by C. Costa: a hand touched it");
+    let reason = "rejected by hand by C. Costa, 2026-11-26 09:12:33 UTC: a hand touched it";
+    assert_eq!(rejected["reason"], reason);
     assert_eq!((&rejected["run"], &rejected["end_s"]), (&run["id"], &run["end_s"]));
     assert_eq!(rolltank(campaign.path(), &["replay", "."]).exit, 3);
     let page = format!("results/run-{}.html", run["id"].as_str().expect("an id"));
-    assert!(campaign.path().join(page).exists(), "what was rejected can be looked at");
+    let page =
+        || std::fs::read_to_string(campaign.path().join(&page)).expect("it can be looked at");
+    assert!(page().contains(&format!("This run is {reason}")), "its own page says so");
     let diagnosis = rolltank(campaign.path(), &["diagnose", ".", "--json"]);
     let diagnosis: Value = serde_json::from_str(&diagnosis.out).expect("JSON");
     assert!(diagnosis["verdict"].is_null(), "{diagnosis}");
 
     campaign.write("judgements.jsonl", reject(1, end_s) + UNDO);
-    assert_eq!(identified(&campaign), (0, before));
+    assert_eq!(identified(&campaign), (0, before.clone()));
+    assert_eq!(rolltank(campaign.path(), &["replay", "."]).exit, 0);
+    assert!(!page().contains("rejected by hand"), "it was taken again");
+
+    let again = UNDO.replace("\"number\":2", "\"number\":3").replace("\"of\":1", "\"of\":2");
+    campaign.write("judgements.jsonl", reject(1, end_s) + UNDO + &again);
+    assert_eq!(identified(&campaign), (3, judged), "an undo that is undone is none");
+
+    let note = reject(1, end_s).replace("\"reject\"", "\"annotate\"");
+    campaign.write("judgements.jsonl", note);
+    assert_eq!(rolltank(campaign.path(), &["replay", "."]).exit, 0);
+    assert!(page().contains("C. Costa noted: a hand touched it"), "notes stand beside the run");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The gates of the ITTC procedure: met, missed with the number, or not to be told.
 
+use rolltank::campaign::Campaign;
 use rolltank::procedure::{self, Answer};
 use rolltank::results::{IdentifiedRun, Results, Sampling};
 use rolltank::run::{RunKind, Still};
@@ -14,7 +15,7 @@ fn first(kind: RunKind) -> IdentifiedRun {
 }
 
 fn answer(run: &IdentifiedRun, id: &str) -> Answer {
-    let mut answers = procedure::of_run(run).into_iter();
+    let mut answers = procedure::of_run(&synthetic_results::campaign("OE basin"), run).into_iter();
     answers.find(|answer| answer.gate.id == id).unwrap_or_else(|| panic!("no gate {id}"))
 }
 
@@ -38,7 +39,9 @@ fn still(duration_s: f64, roll_sd_rad: f64) -> Still {
 #[test]
 fn a_decay_is_asked_for_rest_peaks_small_cycles_its_end_and_its_sampling() {
     let mut run = first(RunKind::Decay);
-    let asked: Vec<&str> = procedure::of_run(&run).iter().map(|answer| answer.gate.id).collect();
+    let campaign = synthetic_results::campaign("OE basin");
+    let answers = procedure::of_run(&campaign, &run);
+    let asked: Vec<&str> = answers.iter().map(|answer| answer.gate.id).collect();
     let of_a_decay = [
         "rest-before-release",
         "settled",
@@ -46,6 +49,7 @@ fn a_decay_is_asked_for_rest_peaks_small_cycles_its_end_and_its_sampling() {
         "peaks",
         "small-cycles",
         "down-to-half-a-degree",
+        "before-waves-return",
     ];
     assert_eq!(asked, of_a_decay);
 
@@ -109,6 +113,45 @@ fn a_forced_run_is_asked_for_calm_for_periods_for_dense_sampling() {
     assert_answered(&run, "sampling", Some(false), Some(100.0));
 }
 
+#[test]
+fn a_run_is_to_end_before_its_waves_are_back_from_the_walls_unless_it_outruns_them() {
+    let mut campaign = synthetic_results::campaign("OE basin");
+    let answer = |campaign: &Campaign, run: &IdentifiedRun| {
+        let answers = procedure::of_run(campaign, run);
+        answers.into_iter().find(|answer| answer.gate.id == "before-waves-return").expect("asked")
+    };
+    let mut run = first(RunKind::Decay);
+    run.identification.natural_frequency_rad_s.mean = 6.905;
+    run.speed_m_s = 0.0;
+    (run.run.start_s, run.run.end_s) = (30.0, 43.0);
+    campaign.tank.width_m = None;
+    assert_eq!(answer(&campaign, &run).met, None);
+    // A tank 10 m wide, a model 0.387 m wide: 9.613 m at 9.80665/(2 x 6.905) m/s are 13.54 s.
+    campaign.tank.width_m = Some(10.0);
+    campaign.hull.beam_m = 0.387;
+    campaign.water.gravity_m_s2 = 9.80665;
+    let told = answer(&campaign, &run);
+    assert_eq!((told.met, told.value), (Some(true), Some(13.0)));
+    assert!((told.limit.unwrap() - 13.54).abs() < 0.005, "{told:?}");
+    run.run.end_s = 44.0;
+    assert_eq!(answer(&campaign, &run).met, Some(false));
+    // The limit is at 0.305 g/w = 0.4332 m/s.
+    run.speed_m_s = 0.43;
+    assert_eq!(answer(&campaign, &run).met, Some(false));
+    run.speed_m_s = -0.44;
+    assert_eq!(answer(&campaign, &run).met, Some(true));
+
+    let mut forced = first(RunKind::Forced);
+    forced.speed_m_s = 0.0;
+    forced.run.excitation_rad_s = Some(5.12);
+    forced.run.still = Some(still(20.0, 0.0));
+    (forced.run.start_s, forced.run.end_s) = (35.0, 39.5);
+    let told = answer(&campaign, &forced);
+    // The rod began with the end of the rest, 9.5 s before; waves of 5.12 rad/s take 10.04 s.
+    assert_eq!((told.met, told.value), (Some(true), Some(9.5)));
+    assert!((told.limit.unwrap() - 10.04).abs() < 0.005, "{told:?}");
+}
+
 fn forced_at(shares: &[f64], natural_rad_s: f64) -> Results {
     let decay = first(RunKind::Decay);
     let forced = first(RunKind::Forced);
@@ -164,7 +207,7 @@ fn a_replayed_decay_says_the_same_on_its_page_and_in_the_contract() {
     let page = format!("run-{}.html", run["id"].as_str().unwrap());
     let page = std::fs::read_to_string(results.join(page)).unwrap();
     let gates = run["gates"].as_array().unwrap();
-    assert_eq!(gates.len(), 6);
+    assert_eq!(gates.len(), 7);
     for gate in gates {
         assert!(page.contains(gate["words"].as_str().unwrap()), "{gate}");
     }

@@ -139,7 +139,7 @@ fn what_is_not_understood_or_has_no_name_changes_nothing() {
 }
 
 #[test]
-fn a_zero_taken_on_the_page_is_logged_and_taken_back() {
+fn a_zero_taken_on_the_page_is_logged_and_taken_back_and_taken_again() {
     let tank = LiveTank::calm_at_speed(8.0);
     let mut daemon = Daemon::start(&tank, &[]);
     let address = daemon.address();
@@ -157,6 +157,12 @@ fn a_zero_taken_on_the_page_is_logged_and_taken_back() {
     assert_ne!(zeros[0], "zero_raw = 0.0");
     assert_eq!(zeros[1], "zero_raw = 0.0", "the campaign file's own");
     daemon.wait_for("linked", 6);
+    let again = undo.replace("of\": 1", "of\": 2");
+    assert_eq!(post(&address, "/act", &[], &again).status, 200, "an undo can be undone");
+    assert_eq!(post(&address, "/act", &[], undo).status, 200, "and the zero taken back again");
+    let kept = tank.text("calibrations.toml");
+    let restored: Vec<&str> = kept.lines().filter(|line| line.starts_with("zero_raw")).collect();
+    assert_eq!(restored, [zeros[0], zeros[1], zeros[0], zeros[1]]);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use rolltank::pipeline;
-use rolltank::report;
+use rolltank::report::{self, Extent};
 use rolltank::results::Results;
 use serde_json::Value;
 
@@ -108,7 +108,8 @@ fn a_report_of_every_kind_of_run_is_readable_on_paper_with_the_numbers_of_the_co
     chromium::program();
     report::write_all(&campaign, &results, folder.path()).unwrap();
     report::write_diagnosis(&campaign, None, folder.path()).unwrap();
-    let pdf = pipeline::print_report(&campaign.name, &results, folder.path()).unwrap();
+    let print = |extent| pipeline::print_report(&campaign.name, &results, folder.path(), extent);
+    let pdf = print(Extent::EveryPage).unwrap();
     assert_readable(&pdf);
     let document = report::identification_json(&campaign, &results);
     assert_runs_agree(&pdf, &serde_json::from_str(&document).unwrap());
@@ -126,10 +127,38 @@ fn a_report_of_every_kind_of_run_is_readable_on_paper_with_the_numbers_of_the_co
 }
 
 #[test]
+fn a_summary_shows_two_runs_on_a_sheet_with_the_numbers_of_the_contract() {
+    let campaign = synthetic_results::campaign("OE basin");
+    let results = synthetic_results::results();
+    let folder = tempfile::tempdir().unwrap();
+    chromium::program();
+    report::write_all(&campaign, &results, folder.path()).unwrap();
+    report::write_diagnosis(&campaign, None, folder.path()).unwrap();
+    let print = |extent| pipeline::print_report(&campaign.name, &results, folder.path(), extent);
+    let pdf = print(Extent::Summary).unwrap();
+    assert_readable(&pdf);
+    let document = report::identification_json(&campaign, &results);
+    assert_runs_agree(&pdf, &serde_json::from_str(&document).unwrap());
+    let text = text(&pdf, "-layout");
+    let sheets: Vec<&str> = text.split('\u{c}').collect();
+    let n_runs_on = |sheet: &str| sheet.matches("Resimulated and measured roll.").count();
+    let with_runs: Vec<usize> =
+        sheets.iter().map(|sheet| n_runs_on(sheet)).filter(|n| *n > 0).collect();
+    assert_eq!(with_runs.iter().sum::<usize>(), results.runs.len());
+    assert_eq!(with_runs.len(), results.runs.len().div_ceil(2), "{with_runs:?}");
+    for run in &results.runs {
+        let title = format!("Run {}: ", run.id);
+        let on = sheets.iter().find(|sheet| sheet.contains(&title)).expect("each has its title");
+        assert!(n_runs_on(on) > 0, "{title} and its figure are together");
+    }
+}
+
+#[test]
 fn the_command_prints_a_campaign() {
     chromium::program();
     let folder = CampaignFolder::new();
-    let told = rolltank(folder.path(), &["report", ".", "-o", "results/paper", "--pdf"]);
+    let report = ["report", ".", "-o", "results/paper", "--pdf", "--every-page"];
+    let told = rolltank(folder.path(), &report);
     assert_eq!(told.exit, 0, "{}", told.err);
     assert!(told.out.contains("printed: results/paper/report.pdf"), "{}", told.out);
     let report = folder.path().join("results/paper");
@@ -144,11 +173,15 @@ fn the_measured_decays_of_kvlcc2_are_readable_on_paper_with_the_numbers_of_the_c
     chromium::program();
     let report = tempfile::tempdir().unwrap();
     let (measured, dir) = (measured.display().to_string(), report.path().display().to_string());
-    let told = rolltank(report.path(), &["report", &measured, "-o", &dir, "--pdf"]);
-    assert_eq!(told.exit, 0, "{}", told.err);
-    let document = fs::read_to_string(report.path().join("identification.json")).unwrap();
-    assert_runs_agree(&report.path().join("report.pdf"), &serde_json::from_str(&document).unwrap());
-    assert_readable(&report.path().join("report.pdf"));
+    for more in [&[][..], &["--every-page"]] {
+        let arguments = [&["report", &measured, "-o", &dir, "--pdf"], more].concat();
+        let told = rolltank(report.path(), &arguments);
+        assert_eq!(told.exit, 0, "{}", told.err);
+        let document = fs::read_to_string(report.path().join("identification.json")).unwrap();
+        let pdf = report.path().join("report.pdf");
+        assert_runs_agree(&pdf, &serde_json::from_str(&document).unwrap());
+        assert_readable(&pdf);
+    }
 }
 
 #[test]

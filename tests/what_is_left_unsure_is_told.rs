@@ -7,6 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rolltank::campaign::Trueness;
 use rolltank::inverse::estimate::Estimate;
+use rolltank::inverse::identification::EquivalentDamping;
 use rolltank::pipeline;
 use rolltank::results::{IdentifiedRun, Results};
 use rolltank::uncertainty::{Basis, Comparison, budgets, comparisons, repeats};
@@ -19,6 +20,7 @@ fn run(condition: &str, froude: f64, damping_per_s: f64) -> IdentifiedRun {
         let first = synthetic_results::results().runs.into_iter().next();
         let mut run = first.expect("a decay comes first");
         pipeline::forget_histories(&mut run);
+        run.identification.equivalent_damping.retain(|at| (at.amplitude_deg - 5.0).abs() < 1e-9);
         run
     });
     let mut run = DECAY.clone();
@@ -113,6 +115,45 @@ fn conditions_that_differ_by_more_than_their_scatter_are_found_to() {
         println!("{basis:?}: found {n_found} of {}", probabilities.len());
         assert!(n_found as f64 > 0.85 * probabilities.len() as f64);
     }
+}
+
+#[test]
+fn conditions_that_part_only_at_large_amplitudes_are_parted_there_as_far_as_decays_reach() {
+    let mut results = Results::default();
+    for (condition, large_per_s) in [("bare hull", 0.4), ("bilge keels", 0.6)] {
+        for share in [0.97, 0.99, 1.01, 1.03] {
+            let mut run = run(condition, 0.2, 0.4 * share);
+            let at_five = run.identification.equivalent_damping[0];
+            let at = |amplitude_deg: f64| {
+                let mean = share * if amplitude_deg > 6.0 { large_per_s } else { 0.4 };
+                let fitted_per_s = Estimate::normal(mean, 0.01 * mean);
+                let extrapolated = amplitude_deg > 12.0;
+                EquivalentDamping { amplitude_deg, fitted_per_s, extrapolated, ..at_five }
+            };
+            run.identification.equivalent_damping = [2.0, 5.0, 10.0, 15.0].map(at).to_vec();
+            results.runs.push(run);
+        }
+    }
+    let told = comparisons(&results);
+    let amplitudes: Vec<f64> = told.iter().map(|at| at.amplitude_deg).collect();
+    assert_eq!(amplitudes, [2.0, 5.0, 10.0], "no decay reaches 15 deg");
+    let probability = |at: &Comparison| at.probability_larger.expect("there are repeats");
+    for equal in &told[..2] {
+        assert!((probability(equal) - 0.5).abs() < 0.01, "{equal:?}");
+    }
+    assert!(probability(&told[2]) > 0.999, "{:?}", told[2]);
+    let share = told[2].difference_share.expect("told");
+    assert!((share.mean - 0.5).abs() < 0.01, "{share:?}");
+
+    let campaign = synthetic_results::campaign("OE basin");
+    let budgets = budgets(&campaign, &results);
+    let told: Vec<_> = budgets.iter().map(|at| (at.amplitude_deg, at.damping_per_s)).collect();
+    for (wanted, found) in
+        [(2.0, 0.4), (2.0, 0.4), (5.0, 0.4), (5.0, 0.4), (10.0, 0.4), (10.0, 0.6)].iter().zip(&told)
+    {
+        assert!((wanted.0 - found.0).abs() < 1e-9 && (wanted.1 - found.1).abs() < 1e-9, "{told:?}");
+    }
+    assert_eq!(told.len(), 6);
 }
 
 #[test]

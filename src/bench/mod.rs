@@ -1,5 +1,6 @@
 //! What the program can do, measured: how often its bands hold the truth, how fast it is.
 
+pub mod acquisition;
 pub mod calibration;
 pub mod diagnosis;
 pub mod drawn_run;
@@ -10,6 +11,7 @@ pub mod ranks;
 pub mod speed;
 
 mod machine;
+mod pages;
 mod stopwatch;
 
 pub use calibration::{Calibration, calibrate};

@@ -1,11 +1,10 @@
 //! What the live page costs the daemon: bytes to each page, processor time by the number of pages.
 
-use std::fs;
-use std::io::{self, Read, Write};
-use std::net::{SocketAddr, TcpStream};
+use std::io;
+use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, Builder};
 use std::time::Duration;
 
@@ -13,6 +12,7 @@ use devices::Quantity;
 use devices::channel::Counts;
 use devices::clock::{Clock, WallClock};
 
+use super::pages::{cost, counted};
 use super::speed::{Figure, figure};
 use crate::page::status::{ChannelStatus, DeviceStatus};
 use crate::page::{Board, Listen, Served, orders, runtime, serve};
@@ -22,10 +22,6 @@ const CHANNELS: usize = 8;
 const RATE_HZ: f64 = 1000.0;
 /// How often samples come, as from a serial port.
 const BATCH: Duration = Duration::from_millis(10);
-/// Over so long each figure is taken.
-const OVER: Duration = Duration::from_secs(5);
-/// Name of the threads that play browsers, whose own time is none of the daemon's.
-const READER: &str = "reader";
 
 /// Bytes a second to one page, and the processor time of board and server with no, one and ten
 /// pages; then the page is left open for a browser for `hold`, once `opened` has been told where.
@@ -61,51 +57,17 @@ pub fn page(
 }
 
 fn with_pages(address: SocketAddr, n_pages: usize) -> io::Result<Vec<Figure>> {
-    let (n_bytes, ended) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicBool::new(false)));
-    let mut readers = Vec::new();
-    for _ in 0..n_pages {
-        let (n_bytes, ended) = (Arc::clone(&n_bytes), Arc::clone(&ended));
-        let mut stream = TcpStream::connect(address)?;
-        write!(stream, "GET /stream HTTP/1.1\r\nHost: {address}\r\n\r\n")?;
-        let reader = Builder::new().name(READER.to_owned());
-        readers.push(reader.spawn(move || read(&mut stream, &n_bytes, &ended))?);
-    }
-    // The greeting, with the last minutes in it, is no figure of a second.
-    thread::sleep(Duration::from_secs(1));
-    let (bytes, busy) = (n_bytes.load(Ordering::Relaxed), busy());
-    thread::sleep(OVER);
-    let spent = busy_since(&busy).as_secs_f64() / OVER.as_secs_f64();
-    let more = n_bytes.load(Ordering::Relaxed) - bytes;
-    ended.store(true, Ordering::Release);
-    for reader in readers {
-        reader.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-    }
-    let pages = match n_pages {
-        0 => "no page".to_owned(),
-        1 => "one page".to_owned(),
-        n => format!("{n} pages"),
-    };
+    let cost = cost(address, n_pages)?;
+    let pages = counted(n_pages);
     let load = figure(
         format!("{CHANNELS} channels at 1 kHz, {pages}: processor time of board and server"),
-        format!("{:.2} % of a core", 100.0 * spent),
+        format!("{:.2} % of a core", 100.0 * cost.share),
     );
-    let bytes_per_s = more as f64 / OVER.as_secs_f64() / n_pages.max(1) as f64;
     let sent = figure(
         format!("{CHANNELS} channels at 1 kHz, {pages}: bytes a second to each"),
-        format!("{:.1} kB", bytes_per_s / 1e3),
+        format!("{:.1} kB", cost.bytes_per_s / 1e3),
     );
     Ok(if n_pages == 0 { vec![load] } else { vec![load, sent] })
-}
-
-/// Reads as a browser would, and counts.
-fn read(stream: &mut TcpStream, n_bytes: &AtomicU64, ended: &AtomicBool) {
-    let mut buffer = [0; 16_384];
-    while !ended.load(Ordering::Acquire) {
-        match stream.read(&mut buffer) {
-            Ok(n) if n > 0 => n_bytes.fetch_add(n as u64, Ordering::Relaxed),
-            _ => return,
-        };
-    }
 }
 
 /// Samples and a status as the daemon brings them.
@@ -151,23 +113,4 @@ fn device(now_s: f64, received: u64) -> DeviceStatus {
         channels: vec![channel; CHANNELS],
         ..DeviceStatus::default()
     }
-}
-
-/// Processor time so far of every thread but the readers.
-fn busy() -> Vec<(String, u64)> {
-    let threads = fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
-    let time = |path: PathBuf| {
-        let name = fs::read_to_string(path.join("comm")).ok()?;
-        let told = fs::read_to_string(path.join("schedstat")).ok()?;
-        let ns = told.split(' ').next()?.parse().ok()?;
-        (name.trim() != READER).then(|| (path.display().to_string(), ns))
-    };
-    threads.filter_map(|entry| time(entry.path())).collect()
-}
-
-fn busy_since(before: &[(String, u64)]) -> Duration {
-    let earlier =
-        |thread: &str| before.iter().find(|(known, _)| known == thread).map_or(0, |t| t.1);
-    let spent_ns = busy().iter().map(|(thread, ns)| ns.saturating_sub(earlier(thread))).sum();
-    Duration::from_nanos(spent_ns)
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
@@ -10,7 +10,8 @@ use clap::{Args, ValueEnum};
 use super::{Exit, Failure};
 use crate::bench::ranks::Ranks;
 use crate::bench::speed::{self, Figure};
-use crate::bench::{Calibration, calibrate, diagnosis, live, machine, page};
+use crate::bench::{Calibration, acquisition, calibrate, diagnosis, live, machine, page};
+use crate::live::LiveError;
 
 /// Measure speed and memory on this machine, and how often the bands hold the truth
 #[derive(Debug, Args)]
@@ -59,7 +60,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
         return Ok(Exit::Done);
     }
     if matches!(arguments.subject, Subject::Live | Subject::All) {
-        told(out, latency()?)?;
+        told(out, in_a_folder(live::report_latency)?)?;
         writeln!(out)?;
     }
     if matches!(arguments.subject, Subject::Page | Subject::All) {
@@ -69,6 +70,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
             out.flush()
         })?;
         told(out, figures)?;
+        told(out, in_a_folder(acquisition::acquisition)?)?;
         writeln!(out)?;
     }
     if matches!(arguments.subject, Subject::Speed | Subject::All) {
@@ -90,12 +92,14 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
 }
 
 /// Measured in a folder of its own, which is removed.
-fn latency() -> Result<Vec<Figure>, Failure> {
+fn in_a_folder(
+    measure: impl Fn(&Path) -> Result<Vec<Figure>, LiveError>,
+) -> Result<Vec<Figure>, Failure> {
     let folder = std::env::temp_dir().join(format!("rolltank-bench-{}", std::process::id()));
     super::fresh_folder::require_fresh(&folder)?;
     let failed = |source| Failure::File { path: folder.clone(), source };
     std::fs::create_dir_all(&folder).map_err(failed)?;
-    let measured = live::report_latency(&folder);
+    let measured = measure(&folder);
     std::fs::remove_dir_all(&folder).map_err(failed)?;
     Ok(measured?)
 }

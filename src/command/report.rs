@@ -9,6 +9,7 @@ use super::method::Identifying;
 use super::{Exit, Failure, replaying};
 use crate::campaign::{self, Campaign};
 use crate::pipeline;
+use crate::report::Extent;
 
 /// Write the pages, tables and catalogue of a campaign to a folder
 #[derive(Debug, Args)]
@@ -18,9 +19,12 @@ pub(super) struct Arguments {
     /// Folder for the report, outside the campaign or below its results/
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    /// Print all pages to report.pdf too, with an installed Chromium or Chrome
+    /// Print a summary to report.pdf too, with an installed Chromium or Chrome
     #[arg(long)]
     pdf: bool,
+    /// Print every page of every run, not only how well its law describes it
+    #[arg(long, requires = "pdf")]
+    every_page: bool,
     #[command(flatten)]
     identifying: Identifying,
 }
@@ -32,7 +36,8 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     let replayed = replaying::replay(&campaign, arguments.identifying, None, Some(dir))?;
     writeln!(out, "report: {}", dir.join(pipeline::REPORT_PAGE).display())?;
     if arguments.pdf {
-        let printed = pipeline::print_report(&campaign.name, &replayed.results, dir)?;
+        let extent = if arguments.every_page { Extent::EveryPage } else { Extent::Summary };
+        let printed = pipeline::print_report(&campaign.name, &replayed.results, dir, extent)?;
         writeln!(out, "printed: {}", printed.display())?;
     }
     Ok(replayed.exit)

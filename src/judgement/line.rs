@@ -68,6 +68,8 @@ pub struct Zeroed {
     pub quantity: Quantity,
     /// The calibration that was in force before.
     pub before: Calibration,
+    /// The calibration with the zero taken.
+    pub after: Calibration,
 }
 
 /// A line that is no judgement.
@@ -88,6 +90,19 @@ impl Judgement {
     pub fn line(&self) -> String {
         serde_json::to_string(self).expect("every key is a string")
     }
+
+    /// A note as a remark on its run.
+    pub fn remark(&self) -> String {
+        format!("{}{NOTED}{}", self.by, self.why)
+    }
+}
+
+/// Stands between who noted something of a run and what.
+const NOTED: &str = " noted: ";
+
+/// Whether a remark on a run is a note of [`Judgement::remark`].
+pub fn is_note(remark: &str) -> bool {
+    remark.contains(NOTED)
 }
 
 /// Every judgement of a text; empty lines are none.

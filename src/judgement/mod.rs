@@ -9,7 +9,7 @@ mod line;
 mod place;
 
 pub use file::{JUDGEMENTS_FILE, append, read};
-pub use line::{BadLine, Deed, Judgement, Zeroed};
+pub use line::{BadLine, Deed, Judgement, Zeroed, is_note};
 pub use place::Place;
 
 /// Everything judged, in the order in which it was.
@@ -57,6 +57,19 @@ impl Judgements {
         }
         left.reverse();
         left
+    }
+
+    /// What undoing that number bears on: the deed at the end of the chain of undoings, and whether
+    /// it is then done again.
+    pub fn meant(&self, number: u64) -> Option<(&Judgement, bool)> {
+        let numbered = |number| self.all.iter().find(|judgement| judgement.number == number);
+        let (mut meant, mut is_again) = (numbered(number)?, false);
+        while let Deed::Undo { of } = meant.deed {
+            // Whoever edits the file may have an undo undo itself.
+            meant = numbered(of).filter(|earlier| earlier.number < meant.number)?;
+            is_again = !is_again;
+        }
+        Some((meant, is_again))
     }
 
     /// Whether a judgement stands, and can therefore be undone.
@@ -108,6 +121,11 @@ mod tests {
         judgements.push(judgement(3, Deed::Undo { of: 2 }));
         assert_eq!(rejected(&judgements), Some(1));
         assert_eq!(judgements.next_number(), 4);
+        let meant = |number| judgements.meant(number).map(|(meant, again)| (meant.number, again));
+        assert_eq!([1, 2, 3].map(meant), [Some((1, false)), Some((1, true)), Some((1, false))]);
+        assert_eq!(meant(9), None);
+        judgements.push(judgement(9, Deed::Undo { of: 9 }));
+        assert_eq!(judgements.meant(9), None, "an undo of itself bears on nothing");
     }
 
     #[test]
@@ -126,6 +144,7 @@ mod tests {
                         zero_raw: 12.5,
                         ..devices::channel::Calibration::default()
                     },
+                    after: devices::channel::Calibration::default(),
                 }],
             },
             Deed::Undo { of: 3 },

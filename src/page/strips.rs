@@ -6,8 +6,8 @@
 use std::collections::VecDeque;
 use std::fmt::Write as _;
 
-/// Stretches a second [1/s] of the world's time.
-const PER_S: f64 = 30.0;
+/// Stretches a second [1/s] of the world's time: one for each frame that is sent.
+const PER_S: f64 = 40.0;
 /// Longest stretch [s]: on a clock that runs faster than the world's a roll period stays one.
 const LONGEST_S: f64 = 0.1;
 /// Stretches of a channel that wait to be fetched: some seconds of them.
@@ -181,7 +181,7 @@ mod tests {
         assert_eq!(strips.channels[0].waiting.len(), WAITING);
         assert_eq!(strips.channels[0].past.len(), PAST_KEPT);
         let text = strips.fetch().expect("the newest");
-        assert!(text.starts_with("{\"t\":1982,"), "{}", &text[..40]);
+        assert!(text.starts_with("{\"t\":1987,"), "{}", &text[..40]);
     }
 
     #[test]

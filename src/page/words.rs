@@ -29,7 +29,7 @@ pub(super) fn doing(status: &Status) -> String {
     );
     let swing_deg = swing_rad.to_degrees();
     if !motion.at_rest {
-        return format!("the model moves since {since_s:.0} s: roll {swing_deg:.2} deg, {run}");
+        return format!("the model has moved for {since_s:.0} s: roll {swing_deg:.2} deg, {run}");
     }
     let known = status.calm.and_then(|calm| Some((calm.level_deg?, calm.to_go)));
     let Some((level_deg, to_go)) = known else {

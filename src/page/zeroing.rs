@@ -1,8 +1,9 @@
-//! Zeros from the instruments that the daemon itself listens to, and their undoing.
+//! Zeros from the instruments that the daemon itself listens to: taken, taken back, taken again.
 
 use std::path::Path;
 
 use devices::Quantity;
+use devices::channel::Calibration;
 use serde::Deserialize;
 
 use super::stamp::stamp_of_now;
@@ -57,10 +58,10 @@ pub(super) fn zero(
             let mut channels = setup.into_iter().flat_map(|setup| &setup.channels);
             let Some(known) = channels.find(|known| known.quantity == quantity) else { continue };
             let (calibration, sentence) = taken.applied(&device.name, known);
+            let (before, after) = (known.calibration.clone(), calibration.calibration.clone());
             campaign::keep_calibration(folder, calibration).map_err(|error| error.to_string())?;
             told.push(sentence + "\n");
-            let before = known.calibration.clone();
-            zeroed.push(Zeroed { device: device.name.clone(), quantity, before });
+            zeroed.push(Zeroed { device: device.name.clone(), quantity, before, after });
         }
     }
     if told.is_empty() {
@@ -72,8 +73,22 @@ pub(super) fn zero(
 
 /// Puts the calibrations that were in force before some zeros in force again.
 pub(super) fn take_back(folder: &Path, channels: &[Zeroed]) -> Result<(), String> {
-    channels.iter().try_for_each(|Zeroed { device, quantity, before }| {
-        let (device, quantity, calibration) = (device.clone(), *quantity, before.clone());
+    put_in_force(folder, channels, |zeroed| &zeroed.before)
+}
+
+/// Puts zeros that were taken back in force again.
+pub(super) fn take_again(folder: &Path, channels: &[Zeroed]) -> Result<(), String> {
+    put_in_force(folder, channels, |zeroed| &zeroed.after)
+}
+
+fn put_in_force(
+    folder: &Path,
+    channels: &[Zeroed],
+    of: impl Fn(&Zeroed) -> &Calibration,
+) -> Result<(), String> {
+    channels.iter().try_for_each(|zeroed| {
+        let (device, quantity) = (zeroed.device.clone(), zeroed.quantity);
+        let calibration = of(zeroed).clone();
         campaign::keep_calibration(folder, TakenCalibration { device, quantity, calibration })
             .map_err(|error| error.to_string())
     })

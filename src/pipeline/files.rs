@@ -78,6 +78,7 @@ pub fn write_results(
     dir: &Path,
 ) -> Result<PathBuf, WriteError> {
     remove_stale_pages(campaign, results, dir)?;
+    report::tell_judgements(results, dir)?;
     report::csv_tables(campaign, results, dir)?;
     write_text(dir, IDENTIFICATION, &report::identification_json(campaign, results))?;
     write_text(dir, "identification.schema.json", report::IDENTIFICATION_SCHEMA)?;

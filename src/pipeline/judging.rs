@@ -1,7 +1,7 @@
 //! What people have judged, laid over what was found: the last step before results are told.
 
 use super::collect::froude_laws;
-use crate::judgement::Judgements;
+use crate::judgement::{Judgement, Judgements};
 use crate::results::{RejectedStretch, Results};
 
 /// The results without the runs that were rejected by hand, which stand behind the other stretches
@@ -11,18 +11,19 @@ pub fn judged(mut results: Results, judgements: &Judgements) -> Results {
     for mut run in found {
         let (start_s, end_s) = (run.run.start_s, run.run.end_s);
         if let Some(rejection) = judgements.rejection(&run.recording, start_s, end_s) {
-            let why = if rejection.why.is_empty() { "no reason given" } else { &rejection.why };
+            let Judgement { at, by, why, .. } = rejection;
+            let why = if why.is_empty() { "no reason given" } else { why };
             results.rejected.push(RejectedStretch {
                 recording: run.recording,
                 start_s,
                 end_s,
-                reason: format!("rejected by hand by {}: {why}", rejection.by),
+                reason: format!("rejected by hand by {by}, {at}: {why}"),
                 run: Some(run.id),
             });
             continue;
         }
         for note in judgements.notes(&run.recording, start_s, end_s) {
-            run.identification.remarks.push(format!("{} noted: {}", note.by, note.why));
+            run.identification.remarks.push(note.remark());
         }
         results.runs.push(run);
     }

@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::Duration;
 
-use crate::report::{self, ReportError};
+use crate::report::{self, Extent, ReportError};
 use crate::results::Results;
 
 /// The printed report in a report folder.
@@ -66,10 +66,15 @@ pub enum PrintError {
 }
 
 /// Prints the pages in `dir` to one PDF with vector figures; returns its path.
-pub fn print_report(campaign: &str, results: &Results, dir: &Path) -> Result<PathBuf, PrintError> {
+pub fn print_report(
+    campaign: &str,
+    results: &Results,
+    dir: &Path,
+    extent: Extent,
+) -> Result<PathBuf, PrintError> {
     let browser = browser().ok_or(PrintError::NoBrowser)?;
     let ids: Vec<&str> = results.runs.iter().map(|run| run.id.as_str()).collect();
-    let book = report::book(campaign, &ids, dir)?;
+    let book = report::book(campaign, &ids, dir, extent)?;
     // Not hidden: a browser that came as a snap sees no hidden folder.
     let workshop = dir.join("printing");
     let printed = print(&browser, &book, &workshop, &dir.join(PRINTED_REPORT));

@@ -67,7 +67,9 @@ pub(super) type Column<'a> = (&'a str, &'a str);
 pub(super) fn table(id: &str, caption: &str, columns: &[Column], rows: &[Markup]) -> Markup {
     html! {
         // A table that fits on a page is not cut; the head of a longer one is printed again.
-        div.table.whole[rows.len() <= ROWS_ON_A_PAGE] {
+        // One that is wider than its window is scrolled, by keys too.
+        div.table.whole[rows.len() <= ROWS_ON_A_PAGE]
+            tabindex="0" role="region" aria-label=(label(caption)) {
             table id=(id) {
                 caption { (notation::html(caption)) }
                 thead { tr {
@@ -82,6 +84,12 @@ pub(super) fn table(id: &str, caption: &str, columns: &[Column], rows: &[Markup]
             }
         }
     }
+}
+
+/// What a screen reader calls a table: the first sentence of its caption.
+fn label(caption: &str) -> String {
+    let end = caption.find(['.', ':', ';', ',']).unwrap_or(caption.len());
+    notation::plain(&caption[..end])
 }
 
 /// A cell with an estimate, its interval on the line below.
@@ -101,9 +109,8 @@ pub(super) fn estimate_cell(estimate: Option<&Estimate>) -> Markup {
 /// The same with at most four significant digits of the mean, for a table read at a glance.
 pub(super) fn short_estimate_cell(estimate: Option<&Estimate>) -> Markup {
     let Some(estimate) = estimate else { return estimate_cell(None) };
-    let text = typeset(&number::estimate_within(estimate, 4));
-    let (mean, interval) = text.split_once(' ').unwrap_or((&text, ""));
-    html! { td.number.stacked { (mean) " " span.interval { (interval) } } }
+    let (mean, interval) = number::parts_within(estimate, 4);
+    html! { td.number.stacked { (typeset(&mean)) " " span.interval { (typeset(&interval)) } } }
 }
 
 /// A cell with a number that is already rounded.

@@ -138,7 +138,7 @@ impl<'a> RunJson<'a> {
             forced: identification.forced.as_ref().map(ForcedJson::new),
             chain: identification.chain.as_ref().map(ChainJson::new),
             counts: run.counts.iter().map(|(of, counts)| ChannelCounts::of(*of, *counts)).collect(),
-            gates: procedure::of_run(run),
+            gates: procedure::of_run(campaign, run),
             remarks: &identification.remarks,
         }
     }

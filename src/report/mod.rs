@@ -14,6 +14,7 @@ mod gates;
 mod glossary;
 mod json;
 mod json_beliefs;
+mod judged_run;
 mod live_page;
 mod notation;
 mod number;
@@ -25,7 +26,7 @@ mod whole_file;
 use std::path::{Path, PathBuf};
 
 pub use appendix::{Appendix, AttachedInstrument, ChannelCalibration, RecordedFile};
-pub use book::book;
+pub use book::{Extent, book};
 pub use damping_table::damping_table;
 pub use diagnosis_json::{DIAGNOSIS_SCHEMA, diagnosis_json};
 pub use diagnosis_text::diagnosis_text;
@@ -126,6 +127,11 @@ pub fn write_run(
 
 /// File name of the figure of damping against Froude number.
 const DAMPING_FIGURE: &str = "damping_against_froude.svg";
+
+/// Tells on the page of each run in `dir` whether people have rejected it, and what they noted.
+pub fn tell_judgements(results: &Results, dir: &Path) -> Result<(), ReportError> {
+    judged_run::tell(results, dir)
+}
 
 /// Writes the campaign's page, `index.html`, to `dir`; returns its path.
 ///

@@ -90,7 +90,8 @@ fn parts(estimate: &Estimate) -> (String, String) {
     parts_within(estimate, 12)
 }
 
-fn parts_within(estimate: &Estimate, digits: i32) -> (String, String) {
+/// The mean and its interval, as [`estimate_within`] writes them.
+pub(crate) fn parts_within(estimate: &Estimate, digits: i32) -> (String, String) {
     let known = [estimate.mean, estimate.lo95, estimate.hi95];
     if !known.iter().all(|value| value.is_finite()) {
         return (significant(estimate.mean, 4), format!("[{UNKNOWN}, {UNKNOWN}]"));

@@ -7,7 +7,8 @@
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::repeats::{Repeats, repeats};
+use super::AMPLITUDES_DEG;
+use super::repeats::{Repeats, repeats_at};
 use crate::campaign::Campaign;
 use crate::results::{IdentifiedRun, Results};
 
@@ -29,6 +30,8 @@ pub struct Budget {
     pub condition: String,
     /// Mean Froude number [-].
     pub froude: f64,
+    /// Roll amplitude of the damping [deg].
+    pub amplitude_deg: f64,
     /// Decays.
     pub n_runs: usize,
     /// Mean `b_eq` [1/s].
@@ -55,9 +58,10 @@ pub struct Budget {
     pub left_out: Vec<&'static str>,
 }
 
-/// One budget per condition and speed, in order.
+/// One budget per amplitude, condition and speed, in order.
 pub fn budgets(campaign: &Campaign, results: &Results) -> Vec<Budget> {
-    repeats(results).iter().map(|repeats| budget(campaign, results, repeats)).collect()
+    let all = AMPLITUDES_DEG.into_iter().flat_map(|amplitude| repeats_at(results, amplitude));
+    all.map(|repeats| budget(campaign, results, &repeats)).collect()
 }
 
 fn budget(campaign: &Campaign, results: &Results, repeats: &Repeats) -> Budget {
@@ -101,6 +105,7 @@ fn budget(campaign: &Campaign, results: &Results, repeats: &Repeats) -> Budget {
     Budget {
         condition: repeats.condition.clone(),
         froude: repeats.froude,
+        amplitude_deg: repeats.amplitude_deg,
         n_runs: repeats.runs.len(),
         damping_per_s: b,
         noise_per_s,

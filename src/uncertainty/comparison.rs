@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
+use super::AMPLITUDES_DEG;
 use super::repeats::{damping, decays};
 use crate::inverse::estimate::Estimate;
 use crate::inverse::scattered::{Node, combination, never_nil, nodes, probability_positive};
-use crate::results::{COMPARISON_DEG, FROUDE_APART, IdentifiedRun, Results, by_speed};
+use crate::results::{FROUDE_APART, IdentifiedRun, Results, by_speed};
 
 /// Where the scatter from run to run is known from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -46,6 +47,7 @@ const N_FREE: usize = 3;
 /// A condition with its decays, scaled by its mean so that one relative scatter fits all.
 struct Condition<'r> {
     name: &'r str,
+    amplitude_deg: f64,
     /// The runs, by speed.
     speeds: Vec<Vec<&'r IdentifiedRun>>,
     mean_per_s: f64,
@@ -57,15 +59,20 @@ impl Condition<'_> {
     }
 }
 
-/// Every pair of conditions at each Froude number at which both were run.
+/// Every pair of conditions at each Froude number at which both were run, by amplitude.
 ///
 /// `b_eq` of a run over the mean of its condition is the condition's value at the speed, plus a
 /// scatter from run to run that is alike everywhere, plus the run's own noise. The scatter is
 /// unknown, scale-free together with the noise, and it is integrated out, so that few repeats make
 /// wide intervals and not bold claims.
 pub fn comparisons(results: &Results) -> Vec<Comparison> {
+    AMPLITUDES_DEG.into_iter().flat_map(|amplitude_deg| at(results, amplitude_deg)).collect()
+}
+
+fn at(results: &Results, amplitude_deg: f64) -> Vec<Comparison> {
+    let names = results.conditions().into_iter();
     let all: Vec<Condition<'_>> =
-        results.conditions().into_iter().filter_map(|name| condition(results, name)).collect();
+        names.filter_map(|name| condition(results, name, amplitude_deg)).collect();
     let n_runs: usize = all.iter().map(Condition::n_runs).sum();
     let n_groups: usize = all.iter().map(|condition| condition.speeds.len()).sum();
     let n_free = n_runs - n_groups;
@@ -92,7 +99,7 @@ pub fn comparisons(results: &Results) -> Vec<Comparison> {
                     first: first.name.to_owned(),
                     second: second.name.to_owned(),
                     froude,
-                    amplitude_deg: COMPARISON_DEG,
+                    amplitude_deg,
                     difference_per_s: told.map(|told| told.0),
                     difference_share: told.map(|told| told.1),
                     probability_larger: told.map(|told| told.2),
@@ -104,11 +111,17 @@ pub fn comparisons(results: &Results) -> Vec<Comparison> {
     comparisons
 }
 
-fn condition<'r>(results: &'r Results, name: &'r str) -> Option<Condition<'r>> {
-    let runs = decays(results, name);
-    let values: Vec<f64> = runs.iter().filter_map(|run| Some(damping(run)?.mean)).collect();
+fn condition<'r>(results: &'r Results, name: &'r str, amplitude_deg: f64) -> Option<Condition<'r>> {
+    let runs = decays(results, name, amplitude_deg);
+    let values: Vec<f64> =
+        runs.iter().filter_map(|run| Some(damping(run, amplitude_deg)?.mean)).collect();
     let mean_per_s = values.iter().sum::<f64>() / values.len().max(1) as f64;
-    (mean_per_s > 0.0).then(|| Condition { name, speeds: by_speed(runs), mean_per_s })
+    (mean_per_s > 0.0).then(|| Condition {
+        name,
+        amplitude_deg,
+        speeds: by_speed(runs),
+        mean_per_s,
+    })
 }
 
 fn mean_froude(runs: &[&IdentifiedRun]) -> f64 {
@@ -119,7 +132,7 @@ fn fit(all: &[Condition<'_>], basis: Basis) -> Vec<Node> {
     let (mut rows, mut values) = (Vec::new(), Vec::new());
     for (i, condition) in all.iter().enumerate() {
         for (k, runs) in condition.speeds.iter().enumerate() {
-            for damping in runs.iter().filter_map(|run| damping(run)) {
+            for damping in runs.iter().filter_map(|run| damping(run, condition.amplitude_deg)) {
                 rows.push(columns(all, basis, i, k));
                 let scale = condition.mean_per_s;
                 values.push((damping.mean / scale, damping.sd / scale));

@@ -28,32 +28,45 @@ pub struct Repeats {
     pub damping_per_s: Option<Estimate>,
 }
 
-/// Decays of each condition at each speed, in order.
+/// Decays of each condition at each speed, in order, at the amplitude of comparison.
 pub fn repeats(results: &Results) -> Vec<Repeats> {
+    repeats_at(results, COMPARISON_DEG)
+}
+
+/// The same at an amplitude [deg], of the decays that reach it.
+pub(super) fn repeats_at(results: &Results, amplitude_deg: f64) -> Vec<Repeats> {
     let mut all = Vec::new();
     for condition in results.conditions() {
-        for runs in by_speed(decays(results, condition)) {
-            all.extend(of(condition, &runs));
+        for runs in by_speed(decays(results, condition, amplitude_deg)) {
+            all.extend(of(condition, &runs, amplitude_deg));
         }
     }
     all
 }
 
-/// The decays of a condition that give their damping at the amplitude of comparison.
-pub(super) fn decays<'r>(results: &'r Results, condition: &str) -> Vec<&'r IdentifiedRun> {
+/// The decays of a condition that give their damping at an amplitude.
+pub(super) fn decays<'r>(
+    results: &'r Results,
+    condition: &str,
+    amplitude_deg: f64,
+) -> Vec<&'r IdentifiedRun> {
     let runs = results.runs.iter().filter(|run| run.condition == condition);
-    runs.filter(|run| run.run.kind == RunKind::Decay && damping(run).is_some()).collect()
+    let gives = |run: &&IdentifiedRun| damping(run, amplitude_deg).is_some();
+    runs.filter(|run| run.run.kind == RunKind::Decay).filter(gives).collect()
 }
 
-/// `b_eq` of a run [1/s] at the amplitude of comparison, where it is a number.
-pub(super) fn damping(run: &IdentifiedRun) -> Option<Estimate> {
-    let damping = run.at_comparison()?.fitted_per_s;
-    (damping.mean.is_finite() && damping.sd.is_finite()).then_some(damping)
+/// `b_eq` of a run [1/s] at an amplitude, where it is a number; beyond what the run reached, only
+/// at the amplitude of comparison.
+pub(super) fn damping(run: &IdentifiedRun, amplitude_deg: f64) -> Option<Estimate> {
+    let at = run.at(amplitude_deg)?;
+    let is_told = !at.extrapolated || (amplitude_deg - COMPARISON_DEG).abs() < 1e-9;
+    let damping = at.fitted_per_s;
+    (is_told && damping.mean.is_finite() && damping.sd.is_finite()).then_some(damping)
 }
 
-fn of(condition: &str, runs: &[&IdentifiedRun]) -> Option<Repeats> {
+fn of(condition: &str, runs: &[&IdentifiedRun], amplitude_deg: f64) -> Option<Repeats> {
     let values: Vec<(f64, f64)> =
-        runs.iter().filter_map(|run| damping(run)).map(|b| (b.mean, b.sd)).collect();
+        runs.iter().filter_map(|run| damping(run, amplitude_deg)).map(|b| (b.mean, b.sd)).collect();
     let n = values.len() as f64;
     if values.is_empty() {
         return None;
@@ -69,7 +82,7 @@ fn of(condition: &str, runs: &[&IdentifiedRun]) -> Option<Repeats> {
     Some(Repeats {
         condition: condition.to_owned(),
         froude: runs.iter().map(|run| run.froude).sum::<f64>() / runs.len() as f64,
-        amplitude_deg: COMPARISON_DEG,
+        amplitude_deg,
         runs: runs.iter().map(|run| run.id.clone()).collect(),
         mean_per_s,
         run_to_run_per_s: repeated.then(|| (squares / (n - 1.0)).sqrt()),

@@ -1,5 +1,6 @@
 // A day at the page: from the first sample to judged runs, through a pulled cable and a restart.
-import { VIEWS, ask, assert, connected, open, PATIENCE, show, story, unfit } from "./stage.mjs";
+import { VIEWS, address, ask, assert, connected, open, PATIENCE, show, story, unfit }
+  from "./stage.mjs";
 
 await story(async (browser) => {
   const page = await open(browser, { colorScheme: "light" });
@@ -39,8 +40,9 @@ await story(async (browser) => {
   await show(page, "now");
   await recordingStopsAndStarts(page);
 
+  const reports = await reportsAreFit(browser, page);
   await page.evaluate(() => document.dispatchEvent(new Event("toggle-theme")));
-  const bad = [];
+  const bad = reports;
   for (const theme of ["dark", "light"]) {
     for (const view of VIEWS) {
       await show(page, view);
@@ -52,6 +54,25 @@ await story(async (browser) => {
   assert.deepEqual(bad, [], "axe");
   assert.deepEqual([...page.complaints, ...second.complaints], [], "console");
 });
+
+// The report's own pages, as the daemon serves them, in light and dark.
+async function reportsAreFit(browser, page) {
+  const { runs: [run] } = await identified(page);
+  const bad = [];
+  for (const colorScheme of ["light", "dark"]) {
+    const report = await open(browser, { colorScheme }, `http://${address}/results/index.html`);
+    const ground = await report.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    assert.equal(ground === "rgb(255, 255, 255)", colorScheme === "light", ground);
+    for (const name of ["index.html", "diagnosis.html", `run-${run}.html`]) {
+      await report.goto(`http://${address}/results/${name}`);
+      assert(await report.locator("h1").count() === 1, name);
+      bad.push(...(await unfit(report)).map((told) => `${name}, ${colorScheme}: ${told}`));
+    }
+    assert.deepEqual(report.complaints, [], "console of the report");
+    await report.context().close();
+  }
+  return bad;
+}
 
 function alarms(page) {
   return page.locator("#alarms .alarm");
@@ -144,7 +165,15 @@ async function rejectAndUndo(page, second) {
   await until("rejected in the file", async () => (await identified(page)).byHand.length === 1);
   const { runs, byHand } = await identified(page);
   assert(!runs.includes(id));
-  assert.deepEqual(byHand, [[id, "rejected by hand by C. Costa: a hand touched the model"]]);
+  assert.equal(byHand[0][0], id);
+  assert.match(byHand[0][1],
+    /^rejected by hand by C\. Costa, \d{4}-\d\d-\d\d [\d:]{8} UTC: a hand touched the model$/);
+  const own = await page.context().newPage();
+  const ownSays = async () => {
+    await own.goto(`http://${address}/results/run-${id}.html`);
+    return own.textContent("#judged");
+  };
+  assert((await ownSays()).startsWith(`This run is ${byHand[0][1]}`), await ownSays());
   await show(second, "runs");
   await second.waitForSelector(`button[data-act=accept][data-run="${id}"]`, PATIENCE);
 
@@ -152,6 +181,20 @@ async function rejectAndUndo(page, second) {
   await confirm(page, "it was a gust");
   await page.waitForSelector(`button[data-act=reject][data-run="${id}"]`, PATIENCE);
   await until("taken again in the file", async () => (await identified(page)).runs.includes(id));
+  await until("taken again on its page", async () => (await ownSays()) === "");
+
+  // An undo is a judgement like any other.
+  await page.click("#told button[data-act=undo]");
+  await confirm(page, "no gust");
+  await page.waitForSelector(`button[data-act=accept][data-run="${id}"]`, PATIENCE);
+  await until("rejected again", async () => (await identified(page)).byHand.length === 1);
+  await until("rejected again on its page", async () => (await ownSays()).includes("C. Costa"));
+  await show(page, "log");
+  await page.click("#log .judgement:not(.undone):has-text('undid number 2') button");
+  await confirm(page, "a gust after all");
+  await until("taken once more", async () => (await identified(page)).runs.includes(id));
+  await own.close();
+  await show(page, "runs");
 
   await page.click(`button[data-act=annotate][data-run="${id}"]`);
   await confirm(page, "door open");
@@ -165,7 +208,7 @@ async function rejectAndUndo(page, second) {
   await until("rejected for good", async () => (await identified(page)).byHand.length === 1);
   await show(page, "log");
   await page.waitForFunction(() =>
-    document.querySelectorAll("#log .judgement").length === 6, null, PATIENCE);
+    document.querySelectorAll("#log .judgement").length === 8, null, PATIENCE);
 }
 
 async function cableIsPulled(page, second) {

@@ -1,7 +1,7 @@
-// Pictures of every view in light and dark, of a question, of an alarm, and of a tablet.
+// Pictures of every view in light and dark, of the report, of a question, of an alarm, of a tablet.
 // rolltank demo --speed 10 --listen 127.0.0.1:8440, and when some runs are there, in the folder of
 // the packages: CHROMIUM=/usr/bin/chromium node tests/browser/pictures.mjs 127.0.0.1:8440 docs/page
-import { VIEWS, connected, launch, open, rest, show } from "./stage.mjs";
+import { VIEWS, address, connected, launch, open, rest, show } from "./stage.mjs";
 
 const [folder] = rest;
 const browser = await launch();
@@ -23,6 +23,8 @@ for (const colorScheme of ["light", "dark"]) {
     await page.waitForTimeout(300);
     await picture(view);
   }
+  const report = await open(browser, { viewport, colorScheme }, `http://${address}/results/index.html`);
+  await report.screenshot({ path: `${folder}/report-${colorScheme}.png` });
   await show(page, "runs");
   await page.click("button[data-act=reject]");
   await page.fill("#act-by", "C. Costa");

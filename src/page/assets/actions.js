@@ -88,7 +88,7 @@ export function wireActions(renew) {
     text.textContent = `Done: ${title}.`;
     place.replaceChildren(text);
     const number = /"number": (\d+)/.exec(told)?.[1];
-    if (number && !title.startsWith("Undo")) {
+    if (number) {
       const undo = document.createElement("button");
       undo.type = "button";
       undo.dataset.act = "undo";

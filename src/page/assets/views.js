@@ -49,12 +49,6 @@ export class Views {
         const href = link.getAttribute("href");
         if (LINKS.test(href)) link.setAttribute("href", `/results/${href}`);
       }
-      for (const table of part.querySelectorAll("div.table")) {
-        const caption = table.querySelector("caption")?.textContent ?? "Table";
-        table.tabIndex = 0;
-        table.setAttribute("role", "region");
-        table.setAttribute("aria-label", caption.slice(0, 60));
-      }
     }
   }
 
@@ -90,7 +84,7 @@ function line({ judgement, stands }) {
   text.textContent = `${judgement.number}. ${judgement.at} ${judgement.by} ${WORDS[what]}${about}${why}`
     + (stands ? "" : " (undone)");
   row.append(text);
-  if (stands && what !== "undo") {
+  if (stands) {
     const button = document.createElement("button");
     button.type = "button";
     button.dataset.act = "undo";

@@ -10,10 +10,11 @@ use serde::Deserialize;
 use serde_json::json;
 
 use super::Served;
-use crate::judgement::{self, Deed, Judgement, Judgements, Place};
+use crate::judgement::{self, Deed, Judgement, Judgements, Place, Zeroed};
 use crate::page::order::Order;
 use crate::page::stamp::stamp_of_now;
-use crate::page::zeroing::{ZeroRequest, take_back, zero};
+use crate::page::status::Status;
+use crate::page::zeroing::{ZeroRequest, take_again, take_back, zero};
 
 /// Most letters of a name, and of a reason or note.
 const NAME_MAX: usize = 80;
@@ -124,53 +125,84 @@ fn grant(served: &Served, wish: Wish) -> Result<(Judgement, Option<Order>), Refu
         What::Annotate { run } => (Deed::Annotate { run: place(served, &run)? }, Order::TellAgain),
         What::Reject { run } => {
             let place = place(served, &run)?;
-            let Place { recording, start_s, end_s } = &place;
-            if judgements.rejection(recording, *start_s, *end_s).is_some() {
-                return Err(conflict(format!("run {run} is rejected already")));
-            }
-            (Deed::Reject { run: place }, Order::TellAgain)
+            (reject(&judgements, place)?, Order::TellAgain)
         }
-        What::StopRecording if status.paused_by.is_some() => {
-            return Err(conflict("nothing is recorded already"));
-        }
-        What::StartRecording if status.paused_by.is_none() => {
-            return Err(conflict("it is recorded already"));
-        }
-        What::StopRecording => (Deed::StopRecording, Order::StopRecording { by: by.clone() }),
-        What::StartRecording => (Deed::StartRecording, Order::StartRecording),
+        What::StopRecording => (Deed::StopRecording, stop_recording(&status, &by)?),
+        What::StartRecording => (Deed::StartRecording, start_recording(&status)?),
         What::Undo { of } => (Deed::Undo { of }, undo(served, &judgements, of, &by)?),
     };
     let judgement = keep(served, by, why, deed)?;
     Ok((judgement, Some(order)))
 }
 
-/// Undoes what more than a line is needed for; the order that follows.
+fn reject(judgements: &Judgements, run: Place) -> Result<Deed, Refusal> {
+    match judgements.rejection(&run.recording, run.start_s, run.end_s) {
+        Some(earlier) => {
+            let Judgement { number, by, .. } = earlier;
+            Err(conflict(format!("the run is rejected already, by {by} as number {number}")))
+        }
+        None => Ok(Deed::Reject { run }),
+    }
+}
+
+fn stop_recording(status: &Status, by: &str) -> Result<Order, Refusal> {
+    match status.paused_by {
+        Some(_) => Err(conflict("nothing is recorded already")),
+        None => Ok(Order::StopRecording { by: by.to_owned() }),
+    }
+}
+
+fn start_recording(status: &Status) -> Result<Order, Refusal> {
+    match status.paused_by {
+        None => Err(conflict("it is recorded already")),
+        Some(_) => Ok(Order::StartRecording),
+    }
+}
+
+/// Does what undoing a number needs beside its line, and the undoing of an undo; the order that
+/// follows.
 fn undo(served: &Served, judgements: &Judgements, of: u64, by: &str) -> Result<Order, Refusal> {
-    let standing = judgements.in_force();
-    let Some(judgement) = standing.iter().find(|judgement| judgement.number == of) else {
+    let meant = judgements.meant(of).filter(|_| judgements.stands(of));
+    let Some((judgement, is_again)) = meant else {
         return Err(conflict(format!("number {of} does not stand, so that nothing can be undone")));
     };
-    Ok(match &judgement.deed {
-        Deed::StopRecording => Order::StartRecording,
-        Deed::StartRecording => Order::StopRecording { by: by.to_owned() },
-        Deed::Zero { channels } => {
-            let is_newer = |later: &&&Judgement| match &later.deed {
-                Deed::Zero { channels: newer } => newer
-                    .iter()
-                    .any(|newer| channels.iter().any(|zeroed| zeroed.quantity == newer.quantity)),
-                _ => false,
-            };
-            let mut later = standing.iter().filter(|later| later.number > of);
-            if let Some(newer) = later.find(is_newer) {
-                let told = format!("zero {} came later: undo that first", newer.number);
-                return Err(conflict(told));
-            }
-            take_back(&served.folder, channels).map_err(conflict)?;
-            Order::Reload
+    match (&judgement.deed, is_again) {
+        (Deed::StopRecording, true) | (Deed::StartRecording, false) => {
+            stop_recording(&served.board.now(), by)
         }
-        Deed::Undo { .. } => return Err(conflict("do it again instead of undoing its undoing")),
-        Deed::Mark { .. } | Deed::Annotate { .. } | Deed::Reject { .. } => Order::TellAgain,
-    })
+        (Deed::StopRecording, false) | (Deed::StartRecording, true) => {
+            start_recording(&served.board.now())
+        }
+        (Deed::Zero { channels }, _) => {
+            require_newest(judgements, judgement.number, channels)?;
+            let put = if is_again { take_again } else { take_back };
+            put(&served.folder, channels).map_err(conflict)?;
+            Ok(Order::Reload)
+        }
+        (Deed::Reject { run }, true) => reject(judgements, run.clone()).map(|_| Order::TellAgain),
+        (
+            Deed::Mark { .. } | Deed::Annotate { .. } | Deed::Reject { .. } | Deed::Undo { .. },
+            _,
+        ) => Ok(Order::TellAgain),
+    }
+}
+
+/// A zero is changed only while no later one of its channels stands.
+fn require_newest(
+    judgements: &Judgements,
+    number: u64,
+    channels: &[Zeroed],
+) -> Result<(), Refusal> {
+    let is_newer = |later: &&&Judgement| match &later.deed {
+        Deed::Zero { channels: newer } if later.number > number => newer
+            .iter()
+            .any(|newer| channels.iter().any(|zeroed| zeroed.quantity == newer.quantity)),
+        _ => false,
+    };
+    match judgements.in_force().iter().find(is_newer) {
+        Some(newer) => Err(conflict(format!("zero {} came later: undo that first", newer.number))),
+        None => Ok(()),
+    }
 }
 
 fn keep(served: &Served, by: String, why: String, deed: Deed) -> Result<Judgement, Refusal> {

@@ -59,7 +59,7 @@ impl Token {
 
 /// What is shown without a token: the page as everybody could build it, and the way in.
 fn is_public(path: &str) -> bool {
-    path == "/" || path == "/enter" || path.starts_with("/assets/")
+    matches!(path, "/" | "/enter" | "/favicon.ico") || path.starts_with("/assets/")
 }
 
 pub(super) async fn admit(State(token): State<Token>, request: Request, next: Next) -> Response {

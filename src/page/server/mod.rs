@@ -118,6 +118,7 @@ pub fn serve(runtime: &Runtime, listen: &Listen, served: Served) -> Result<Socke
     let router = Router::new()
         .route("/", get(shell::page))
         .route("/assets/{name}", get(shell::asset))
+        .route("/favicon.ico", get(shell::icon))
         .route("/enter", post(login::enter).with_state(token.clone()))
         .route("/stream", get(stream::stream).with_state(stream))
         .route("/view", get(results::view))

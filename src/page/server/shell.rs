@@ -10,6 +10,11 @@ pub(super) async fn page() -> Html<&'static str> {
     Html(PAGE)
 }
 
+/// Browsers ask for it where a page names none, as those of the report do.
+pub(super) async fn icon() -> Response {
+    asset(Path("icon.svg".to_owned())).await
+}
+
 pub(super) async fn asset(Path(name): Path<String>) -> Response {
     match ASSETS.iter().find(|asset| asset.name == name) {
         Some(asset) => ([(header::CONTENT_TYPE, asset.content_type)], asset.text).into_response(),

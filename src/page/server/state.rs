@@ -28,7 +28,7 @@ struct ChannelState<'s> {
 pub(super) fn state(board: &Board) -> (String, String) {
     let status = board.now();
     let shown = board.shown().number;
-    let marks = board.judgements().next_number();
+    let judgements = board.judgements().next_number();
     let slow = json!({
         "campaign": status.campaign,
         "condition": status.condition,
@@ -46,7 +46,7 @@ pub(super) fn state(board: &Board) -> (String, String) {
         "links": links(&status),
         "at_rest": status.motion.at_rest,
         "shown": shown,
-        "judgements": marks,
+        "judgements": judgements,
     });
     let mut whole = slow.clone();
     whole["at_s"] = json!(status.at_s);

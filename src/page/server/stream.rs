@@ -26,12 +26,12 @@ use tokio::time::{MissedTickBehavior, interval};
 use super::state::state;
 use crate::page::board::Board;
 
-/// How often strips are sent: thirty times a second, with a timer that is a little late.
-const FRAME: Duration = Duration::from_millis(32);
+/// How often strips are sent: so often that thirty a second arrive on a busy machine too.
+const FRAME: Duration = Duration::from_millis(25);
 /// Frames from one look at the state to the next, and to the one that is sent though nothing but
 /// time has passed.
-const FRAMES_PER_LOOK: u32 = 3;
-const FRAMES_PER_STATE: u32 = 15;
+const FRAMES_PER_LOOK: u32 = 4;
+const FRAMES_PER_STATE: u32 = 20;
 /// Events that the ring holds: some seconds.
 const RING: usize = 128;
 /// Events on their way into one socket.

@@ -1,7 +1,7 @@
 //! Was the water calm for long enough before the rod began, to check the zeros?
 
+use super::Asked;
 use crate::procedure::gate::{Answer, Gate, ITTC};
-use crate::results::IdentifiedRun;
 use crate::run::RunKind;
 
 const GATE: Gate = Gate {
@@ -14,7 +14,7 @@ const GATE: Gate = Gate {
 /// Calm water to record first [s].
 const CALM_S: f64 = 20.0;
 
-pub(super) fn answer(run: &IdentifiedRun) -> Option<Answer> {
+pub(super) fn answer(Asked { run, .. }: &Asked<'_>) -> Option<Answer> {
     if run.run.kind != RunKind::Forced {
         return None;
     }

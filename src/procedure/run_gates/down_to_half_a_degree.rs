@@ -1,7 +1,7 @@
 //! Was the decay followed down to half a degree?
 
+use super::Asked;
 use crate::procedure::gate::{Answer, Gate, ITTC};
-use crate::results::IdentifiedRun;
 use crate::run::RunKind;
 
 const GATE: Gate =
@@ -10,7 +10,7 @@ const GATE: Gate =
 /// Roll at which a recording may be stopped [deg].
 const SMALLEST_DEG: f64 = 0.5;
 
-pub(super) fn answer(run: &IdentifiedRun) -> Option<Answer> {
+pub(super) fn answer(Asked { run, .. }: &Asked<'_>) -> Option<Answer> {
     if run.run.kind != RunKind::Decay {
         return None;
     }

@@ -1,7 +1,7 @@
 //! Does the decay have enough peaks to part its coefficients?
 
+use super::Asked;
 use crate::procedure::gate::{Answer, Gate, OUR_LIMIT};
-use crate::results::IdentifiedRun;
 use crate::run::RunKind;
 
 const GATE: Gate = Gate { id: "peaks", asks: "Peaks of the decay", unit: "–", source: OUR_LIMIT };
@@ -9,7 +9,7 @@ const GATE: Gate = Gate { id: "peaks", asks: "Peaks of the decay", unit: "–", 
 /// Two for each of linear damping, nonlinear damping, frequency.
 const N_PEAKS: f64 = 6.0;
 
-pub(super) fn answer(run: &IdentifiedRun) -> Option<Answer> {
+pub(super) fn answer(Asked { run, .. }: &Asked<'_>) -> Option<Answer> {
     if run.run.kind != RunKind::Decay {
         return None;
     }

@@ -1,7 +1,7 @@
 //! Was the model at rest before it was heeled and released?
 
+use super::Asked;
 use crate::procedure::gate::{Answer, Gate, OUR_LIMIT};
-use crate::results::IdentifiedRun;
 use crate::run::RunKind;
 
 const GATE: Gate = Gate {
@@ -11,7 +11,7 @@ const GATE: Gate = Gate {
     source: OUR_LIMIT,
 };
 
-pub(super) fn answer(run: &IdentifiedRun) -> Option<Answer> {
+pub(super) fn answer(Asked { run, .. }: &Asked<'_>) -> Option<Answer> {
     if run.run.kind != RunKind::Decay {
         return None;
     }

@@ -1,7 +1,7 @@
 //! Was the run sampled densely enough?
 
+use super::Asked;
 use crate::procedure::gate::{Answer, Gate, ITTC};
-use crate::results::IdentifiedRun;
 use crate::run::RunKind;
 
 const GATE: Gate = Gate {
@@ -17,7 +17,7 @@ const DECAY_HZ: f64 = 50.0;
 const FORCED_HZ: f64 = 200.0;
 
 #[expect(clippy::unnecessary_wraps, reason = "every gate has the same shape")]
-pub(super) fn answer(run: &IdentifiedRun) -> Option<Answer> {
+pub(super) fn answer(Asked { run, .. }: &Asked<'_>) -> Option<Answer> {
     let (limit_hz, drive_hz) = match run.run.kind {
         RunKind::Decay => (DECAY_HZ, None),
         RunKind::Forced => (FORCED_HZ, run.sampling.drive_hz),

@@ -1,7 +1,7 @@
 //! Had the waves of the run before died when this one began?
 
+use super::Asked;
 use crate::procedure::gate::{Answer, Gate, OUR_LIMIT};
-use crate::results::IdentifiedRun;
 
 const GATE: Gate =
     Gate { id: "settled", asks: "Roll left by the run before", unit: "deg", source: OUR_LIMIT };
@@ -10,7 +10,7 @@ const GATE: Gate =
 pub const CALM_DEG: f64 = 0.1;
 
 #[expect(clippy::unnecessary_wraps, reason = "every gate has the same shape")]
-pub(super) fn answer(run: &IdentifiedRun) -> Option<Answer> {
+pub(super) fn answer(Asked { run, .. }: &Asked<'_>) -> Option<Answer> {
     let Some(still) = run.run.still else {
         return Some(Answer::untold(GATE, "no rest was recorded before the run"));
     };

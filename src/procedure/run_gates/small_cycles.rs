@@ -1,7 +1,7 @@
 //! Are there enough small cycles for the natural period?
 
+use super::Asked;
 use crate::procedure::gate::{Answer, Gate, ITTC};
-use crate::results::IdentifiedRun;
 use crate::run::RunKind;
 
 const GATE: Gate = Gate {
@@ -16,7 +16,7 @@ const SMALL_DEG: f64 = 5.0;
 /// Cycles wanted.
 const N_CYCLES: f64 = 8.0;
 
-pub(super) fn answer(run: &IdentifiedRun) -> Option<Answer> {
+pub(super) fn answer(Asked { run, .. }: &Asked<'_>) -> Option<Answer> {
     if run.run.kind != RunKind::Decay {
         return None;
     }

@@ -1,7 +1,7 @@
 //! Was the rod kept going for long enough once the roll was steady?
 
+use super::Asked;
 use crate::procedure::gate::{Answer, Gate, ITTC};
-use crate::results::IdentifiedRun;
 use crate::run::RunKind;
 
 const GATE: Gate =
@@ -10,7 +10,7 @@ const GATE: Gate =
 /// Periods wanted.
 const N_PERIODS: f64 = 30.0;
 
-pub(super) fn answer(run: &IdentifiedRun) -> Option<Answer> {
+pub(super) fn answer(Asked { run, .. }: &Asked<'_>) -> Option<Answer> {
     if run.run.kind != RunKind::Forced {
         return None;
     }

@@ -15,8 +15,9 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
     let columns = [
         ("Condition", ""),
         ("Fr", "–"),
+        ("A", "deg"),
         ("n", ""),
-        ("b_{eq}(5°)", "1/s"),
+        ("b_{eq}", "1/s"),
         ("Noise", "A"),
         ("Digitiser", "B"),
         ("Run to run", "A"),
@@ -26,9 +27,9 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
         ("U b_{eq}", "%"),
         ("U B̂₄₄", "%"),
     ];
-    let caption = "Standard uncertainties of the mean b_{eq} of n decays at 5 deg in 1/s, type A \
-                   or B, u all of them together; U = k u as a share of the value, k for 95 % with \
-                   the effective degrees of freedom.";
+    let caption = "Standard uncertainties of the mean b_{eq} of n decays at roll amplitude A in \
+                   1/s, type A or B, u all of them together; U = k u as a share of the value, k \
+                   for 95 % with the effective degrees of freedom.";
     let rows: Vec<Markup> = all.iter().map(row).collect();
     let equations: Vec<Markup> = EQUATIONS
         .iter()
@@ -70,6 +71,7 @@ fn row(budget: &Budget) -> Markup {
     html! {
         td { (budget.condition) }
         (number_cell(&fixed(budget.froude, 3)))
+        (number_cell(&fixed(budget.amplitude_deg, 0)))
         (number_cell(&budget.n_runs.to_string()))
         (number_cell(&significant(budget.damping_per_s, 4)))
         (number_cell(&known(Some(budget.noise_per_s))))

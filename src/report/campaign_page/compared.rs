@@ -12,26 +12,50 @@ const KNOWN: f64 = 0.975;
 
 pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
     let all = uncertainty::comparisons(page.results);
-    let basis = all.first()?.basis;
+    let notes = notes(&all);
+    if all.is_empty() {
+        return None;
+    }
     let rows: Vec<Markup> = all.iter().map(row).collect();
     let columns = [
         ("Second against first", ""),
+        ("A", "deg"),
         ("Fr", "–"),
         ("Difference", "1/s"),
         ("of the first", "%"),
         ("P(second larger)", ""),
         ("", ""),
     ];
-    let caption = "b_{eq} of the second condition less that of the first at 5 deg, from free \
-                   decays, and the posterior probability that it is larger.";
+    let caption = "b_{eq} of the second condition less that of the first at roll amplitude A, \
+                   from the free decays that reach it, and the posterior probability that it is \
+                   larger.";
     Some(section(
         "compared",
         "Conditions compared",
         &html! {
             (table("compared-table", caption, &columns, &rows))
-            p.note { (told(basis)) }
+            @for note in notes { p.note { (note) } }
         },
     ))
+}
+
+/// What is known of the scatter, and at which amplitudes where that differs between them.
+fn notes(all: &[Comparison]) -> Vec<String> {
+    let mut amplitudes_deg: Vec<(Basis, Vec<f64>)> = Vec::new();
+    for Comparison { basis, amplitude_deg, .. } in all {
+        match amplitudes_deg.iter_mut().find(|(known, _)| known == basis) {
+            Some((_, at)) if at.last() == Some(amplitude_deg) => {}
+            Some((_, at)) => at.push(*amplitude_deg),
+            None => amplitudes_deg.push((*basis, vec![*amplitude_deg])),
+        }
+    }
+    let is_one = amplitudes_deg.len() == 1;
+    let note = |(basis, at): (Basis, Vec<f64>)| {
+        let at: Vec<String> = at.into_iter().map(|deg| fixed(deg, 0)).collect();
+        let place = if is_one { String::new() } else { format!("At {} deg: ", at.join(", ")) };
+        place + told(basis)
+    };
+    amplitudes_deg.into_iter().map(note).collect()
 }
 
 fn told(basis: Basis) -> &'static str {
@@ -61,6 +85,7 @@ fn row(at: &Comparison) -> Markup {
     };
     html! {
         td { (at.second) " against " (at.first) }
+        (number_cell(&fixed(at.amplitude_deg, 0)))
         (number_cell(&fixed(at.froude, 3)))
         (estimate_cell(at.difference_per_s.as_ref()))
         (short_estimate_cell(at.difference_share.map(|share| share.scaled(100.0)).as_ref()))

@@ -16,8 +16,8 @@ const TOGETHER: &str = "What is asked of the runs of one condition at one speed 
 const N_NAMED: usize = 6;
 
 pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
-    let runs: Vec<(&IdentifiedRun, Vec<Answer>)> =
-        page.results.runs.iter().map(|run| (run, procedure::of_run(run))).collect();
+    let answered = |run| (run, procedure::of_run(page.campaign, run));
+    let runs: Vec<(&IdentifiedRun, Vec<Answer>)> = page.results.runs.iter().map(answered).collect();
     let together = procedure::of_campaign(page.results);
     if runs.is_empty() {
         return None;

@@ -11,6 +11,7 @@ mod diagnosis;
 mod equivalent_damping;
 mod extinction;
 mod forced_damping;
+mod forced_figures;
 mod forced_runs;
 mod froude_law;
 mod gates;

@@ -31,7 +31,7 @@ pub(super) fn part(page: &DiagnosisPage) -> Option<Markup> {
 
 fn row(before: &Leftover, after: &Leftover) -> Markup {
     html! {
-        td { (after.run) }
+        td.name { (after.run) }
         td { (after.channel) }
         (number_cell(&significant(100.0 * before.share, 2)))
         (number_cell(&significant(100.0 * after.share, 2)))

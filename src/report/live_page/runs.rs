@@ -4,7 +4,6 @@ use maud::{Markup, html};
 
 use crate::report::campaign_page::CampaignPage;
 use crate::report::document::{number_cell, run_link, section, short_estimate_cell, table};
-
 use crate::report::number::fixed;
 use crate::results::{IdentifiedRun, RejectedStretch};
 
@@ -59,7 +58,11 @@ fn not_used(page: &CampaignPage) -> Markup {
     let (refused, changeovers) = page.results.refusals_and_changeovers();
     let row = |stretch: &&RejectedStretch| {
         html! {
-            td.name { @if let Some(run) = &stretch.run { (run) } @else { (stretch.recording) } }
+            td.name {
+                @if let Some(run) = &stretch.run {
+                    a href={ "/results/" (run_link(run)) } { (run) }
+                } @else { (stretch.recording) }
+            }
             (number_cell(&fixed(stretch.start_s, 1)))
             (number_cell(&fixed(stretch.end_s, 1)))
             td { (stretch.reason) }

@@ -76,7 +76,7 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
         "facts",
         "The run",
         &html! {
-            div.table { table { tbody {
+            div.table tabindex="0" role="region" aria-label="The run" { table { tbody {
                 @for (name, value) in &rows {
                     tr { th scope="row" { (notation::html(name)) } td { (typeset_numbers(value)) } }
                 }

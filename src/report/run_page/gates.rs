@@ -8,7 +8,7 @@ use crate::report::document::{section, table};
 use crate::report::gates::{COLUMNS, cells};
 
 pub(super) fn part(page: &RunPage) -> Option<Markup> {
-    let answers = procedure::of_run(page.run);
+    let answers = procedure::of_run(page.campaign, page.run);
     let rows: Vec<Markup> = answers.iter().map(cells).collect();
     let caption = "Gates of ITTC 7.5-02-07-04.5 for this run. They are advice: a run that misses \
                    one is used like any other.";

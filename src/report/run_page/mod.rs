@@ -17,12 +17,13 @@ mod observable;
 mod record;
 mod remarks;
 mod resimulation;
+mod result;
 mod roll;
 mod scatter;
 
 use maud::{Markup, html};
 
-use super::{document, field_units::FieldUnits, glossary};
+use super::{document, field_units::FieldUnits, glossary, judged_run};
 use crate::campaign::Campaign;
 use crate::inverse::identification::Identification;
 use crate::results::{IdentifiedRun, Overview, RejectedStretch};
@@ -90,6 +91,8 @@ pub(super) fn html(
         p.lead {
             (campaign.name) " · " (run.condition) " · " a href="index.html" { "campaign report" }
         }
+        (result::line(&page))
+        (judged_run::place(None, &[]))
         @for part in PARTS {
             @if let Some(part) = part(&page) { (part) }
         }
