@@ -28,7 +28,7 @@ const MOST: usize = 5;
 /// Times that the base model is settled anew with the noise that it left.
 const MOST_STARTS: usize = 6;
 /// Effects that are fitted in full at each step.
-const FITTED: usize = 6;
+const FITTED: usize = 8;
 
 /// One effect in the model with what cannot be told from it.
 #[derive(Debug, Clone)]

@@ -11,10 +11,14 @@ pub(super) struct Settled {
     /// Logarithm of the evidence over all scatters.
     pub(super) log_evidence: f64,
     pub(super) summaries: Vec<Summary>,
+    /// Misfit that it is still promised to lose; that much is not in the evidence.
+    pub(super) promised: f64,
 }
 
 /// Steps after which a model that still moves is taken where it is.
-const MOST_STEPS: usize = 40;
+const MOST_STEPS: usize = 12;
+/// The same of a model that may yet be the best.
+const MOST_STEPS_MORE: usize = 28;
 /// Steps that the runs' own numbers are given to follow a step of the campaign's.
 const FOLLOWING: usize = 3;
 /// What they may still gain by it when the campaign steps again.
@@ -24,6 +28,15 @@ const SMALL_GAIN: f64 = 0.05;
 
 /// Settles a model from where it stands.
 pub(super) fn settle(survey: &Survey, start: Fit, noise: &[ChannelNoise]) -> Settled {
+    settle_in(MOST_STEPS, survey, start, noise)
+}
+
+/// Settles a model further that has not settled in the steps that any is given.
+pub(super) fn settle_further(survey: &Survey, start: Fit, noise: &[ChannelNoise]) -> Settled {
+    settle_in(MOST_STEPS_MORE, survey, start, noise)
+}
+
+fn settle_in(most_steps: usize, survey: &Survey, start: Fit, noise: &[ChannelNoise]) -> Settled {
     let mut fit = start;
     let mut summaries = survey.summaries(&fit, noise, &|_| Vec::new());
     let mut n_steps = 0;
@@ -34,7 +47,7 @@ pub(super) fn settle(survey: &Survey, start: Fit, noise: &[ChannelNoise]) -> Set
         let own: f64 = summaries.iter().map(|summary| summary.own_gain).sum();
         let unfollowed = own + solution.unsettled(survey, &fit);
         if promised + unfollowed < SMALL_GAIN {
-            return Settled { fit, solution, log_evidence, summaries };
+            return Settled { fit, solution, log_evidence, summaries, promised: 0.0 };
         }
         // A long record bends the valley: the runs' own numbers follow what the campaign's did
         // before it steps again, while that brings them lower.
@@ -46,7 +59,7 @@ pub(super) fn settle(survey: &Survey, start: Fit, noise: &[ChannelNoise]) -> Set
             n_followed += 1;
             continue;
         }
-        let better = if n_steps < MOST_STEPS {
+        let better = if n_steps < most_steps {
             stepped(survey, &fit, &summaries, &solution, noise)
         } else {
             None
@@ -54,7 +67,7 @@ pub(super) fn settle(survey: &Survey, start: Fit, noise: &[ChannelNoise]) -> Set
         let Some(better) = better else {
             // What is promised to a fit that gets no further is no evidence for it.
             let log_evidence = log_evidence - 0.5 * promised;
-            return Settled { fit, solution, log_evidence, summaries };
+            return Settled { fit, solution, log_evidence, summaries, promised };
         };
         (fit, summaries) = better;
         (n_steps, n_followed, misfit_before) = (n_steps + 1, 0, f64::INFINITY);

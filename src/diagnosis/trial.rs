@@ -4,7 +4,7 @@ use super::cores;
 use super::layout::Layout;
 use super::run_fit::ChannelNoise;
 use super::score::Scored;
-use super::settle::{Settled, settle};
+use super::settle::{Settled, settle, settle_further};
 use super::survey::{Extension, Fit, Survey};
 use crate::model::{Acts, effects};
 
@@ -14,18 +14,36 @@ pub(super) struct Tried {
     pub(super) id: &'static str,
 }
 
-/// Fits candidates in full, each on a core.
+/// Share of the best one's evidence by which a candidate that has not settled may lie behind and
+/// still matter.
+const WITHIN_REACH: f64 = 0.2;
+
+/// Fits candidates in full, each on a core; those that take long only as far as they matter.
 pub(super) fn fit_all(
     survey: &Survey,
     current: &Settled,
     scores: &[Scored],
     noise: &[ChannelNoise],
 ) -> Vec<Tried> {
-    cores::each(scores.len(), |k| {
+    let mut tried = cores::each(scores.len(), |k| {
         let extension = scores[k].extension.clone();
         let id = extension.effect.id;
         Tried { settled: settle(survey, with(survey, &current.fit, extension, noise), noise), id }
-    })
+    });
+    let logs = tried.iter().map(|one| one.settled.log_evidence);
+    let best = logs.fold(f64::NEG_INFINITY, f64::max);
+    let reach = best - WITHIN_REACH * (best - current.log_evidence).max(0.0);
+    let further = cores::each(tried.len(), |k| {
+        let Settled { fit, log_evidence, promised, .. } = &tried[k].settled;
+        let is_within_reach = *promised > 0.0 && log_evidence + 0.5 * promised > reach;
+        is_within_reach.then(|| settle_further(survey, fit.clone(), noise))
+    });
+    for (one, further) in tried.iter_mut().zip(further) {
+        if let Some(further) = further {
+            one.settled = further;
+        }
+    }
+    tried
 }
 
 /// The model with one more effect: with the strengths that the score gives it where they help as
