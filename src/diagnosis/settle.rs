@@ -18,7 +18,7 @@ pub(super) struct Settled {
 /// Steps after which a model that still moves is taken where it is.
 const MOST_STEPS: usize = 12;
 /// The same of a model that may yet be the best.
-const MOST_STEPS_MORE: usize = 28;
+const MOST_STEPS_MORE: usize = 12;
 /// Steps that the runs' own numbers are given to follow a step of the campaign's.
 const FOLLOWING: usize = 3;
 /// What they may still gain by it when the campaign steps again.

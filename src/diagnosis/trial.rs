@@ -33,14 +33,10 @@ pub(super) fn fit_all(
     let logs = tried.iter().map(|one| one.settled.log_evidence);
     let best = logs.fold(f64::NEG_INFINITY, f64::max);
     let reach = best - WITHIN_REACH * (best - current.log_evidence).max(0.0);
-    let further = cores::each(tried.len(), |k| {
-        let Settled { fit, log_evidence, promised, .. } = &tried[k].settled;
-        let is_within_reach = *promised > 0.0 && log_evidence + 0.5 * promised > reach;
-        is_within_reach.then(|| settle_further(survey, fit.clone(), noise))
-    });
-    for (one, further) in tried.iter_mut().zip(further) {
-        if let Some(further) = further {
-            one.settled = further;
+    // One after the other: the runs of each are shared out among the cores.
+    for Tried { settled, .. } in &mut tried {
+        if settled.promised > 0.0 && settled.log_evidence + 0.5 * settled.promised > reach {
+            *settled = settle_further(survey, settled.fit.clone(), noise);
         }
     }
     tried
