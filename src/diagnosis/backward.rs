@@ -7,6 +7,7 @@ use super::score::{Scored, score};
 use super::settle::{Settled, settle};
 use super::survey::Survey;
 use super::trial::{fit_all, is_newest_plausible, with};
+use crate::model::effects;
 
 /// Takes each effect out again: one that is missed too little leaves, and what could stand in its
 /// place, the others given, is told with it.
@@ -34,7 +35,9 @@ pub(super) fn check_backward(
         let rivals: Vec<Scored> = score(survey, &without.fit, noise)
             .into_iter()
             .filter(|s| {
-                s.extension.effect.id != taken.effect.id && s.log_bayes_factor > 0.3 * missed
+                let id = s.extension.effect.id;
+                let is_other = id != taken.effect.id && !effects::is_unnamed(id);
+                is_other && s.log_bayes_factor > 0.3 * missed
             })
             .take(4)
             .collect();

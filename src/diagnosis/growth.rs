@@ -1,6 +1,6 @@
 //! The model grows by one effect at a time until nothing more is to be named.
 
-use super::alike::{contains, is_approximate, is_same};
+use super::alike::{SAME, contains, is_approximate, is_same};
 use super::backward::check_backward;
 use super::leftover::{self, Leftover};
 use super::run_fit::ChannelNoise;
@@ -8,7 +8,7 @@ use super::score::{Scored, score};
 use super::settle::{Settled, settle};
 use super::survey::{Fit, Survey};
 use super::trial::{Tried, fit_all, is_newest_plausible, is_plausible};
-use crate::model::Scope;
+use crate::model::{Scope, effects};
 
 /// Least logarithm of a Bayes factor at which an effect may enter: one in a thousand by chance.
 pub(super) const ENTERS: f64 = 7.0;
@@ -50,6 +50,8 @@ pub(super) struct Grown {
     pub(super) ranking: Vec<(&'static str, f64)>,
     /// Effects that would explain more but lie outside their physical range, with that.
     pub(super) implausible: Vec<(&'static str, f64)>,
+    /// Whether a law of no known cause does better than any effect.
+    pub(super) is_unnamed: bool,
 }
 
 /// Grows the base model of a campaign.
@@ -70,12 +72,14 @@ pub(super) fn grow(survey: &Survey) -> Grown {
     let base_fit = current.fit.clone();
     let mut entered: Vec<Entered> = Vec::new();
     let (mut ranking, mut implausible) = (Vec::new(), Vec::new());
+    let mut is_unnamed = false;
     while entered.len() < MOST {
         let Some(step) = step(survey, &current, &noise, &entered) else { break };
         if entered.is_empty() {
             ranking.clone_from(&step.ranking);
         }
         implausible.extend(step.implausible);
+        is_unnamed = step.is_unnamed;
         let Some(won) = step.won else { break };
         noise = step.noise;
         current = won.0;
@@ -95,7 +99,7 @@ pub(super) fn grow(survey: &Survey) -> Grown {
         last = settle(survey, fit, &noise);
     }
     let (base, last) = (base.over_scatters(survey), last.over_scatters(survey));
-    Grown { base, last, noise, entered, ranking, implausible }
+    Grown { base, last, noise, entered, ranking, implausible, is_unnamed }
 }
 
 /// One step of growth.
@@ -105,6 +109,8 @@ struct Step {
     noise: Vec<ChannelNoise>,
     ranking: Vec<(&'static str, f64)>,
     implausible: Vec<(&'static str, f64)>,
+    /// Whether a law of no known cause does better than any effect.
+    is_unnamed: bool,
 }
 
 /// Tries to add one effect; none when no effect is worth a look.
@@ -117,8 +123,11 @@ fn step(
     let scores = score(survey, &before.fit, noise);
     let mut ranking: Vec<(&'static str, f64)> =
         scores.iter().map(|s| (s.extension.effect.id, s.log_bayes_factor)).collect();
-    let quiet =
-        |ranking| Some(Step { won: None, noise: noise.to_vec(), ranking, implausible: Vec::new() });
+    ranking.retain(|(id, _)| !effects::is_unnamed(id));
+    let quiet = |ranking| {
+        let (noise, implausible) = (noise.to_vec(), Vec::new());
+        Some(Step { won: None, noise, ranking, implausible, is_unnamed: false })
+    };
     if scores.first().is_none_or(|s| s.log_bayes_factor < 0.5 * ENTERS) {
         return quiet(ranking);
     }
@@ -167,8 +176,22 @@ fn step(
     for (effect, log) in &implausible {
         tracing::debug!(effect, log, "outside its physical range");
     }
-    let won = winner(survey, &current, plausible, entered);
-    Some(Step { won, noise, ranking, implausible })
+    let is_unnamed = none_of_them(&current, &plausible);
+    let known: Vec<Tried> =
+        plausible.into_iter().filter(|one| !effects::is_unnamed(one.id)).collect();
+    let won = if is_unnamed { None } else { winner(survey, &current, known, entered) };
+    Some(Step { won, noise, ranking, implausible, is_unnamed })
+}
+
+/// Whether a law of no known cause explains the runs better than every effect, best first, does.
+fn none_of_them(current: &Settled, plausible: &[Tried]) -> bool {
+    let Some(best) = plausible.first().filter(|one| effects::is_unnamed(one.id)) else {
+        return false;
+    };
+    let second = plausible[1..].iter().map(|one| one.settled.log_evidence).next();
+    let others = second.map_or(current.log_evidence, |log| log.max(current.log_evidence));
+    best.settled.log_evidence > current.log_evidence + ENTERS
+        && best.settled.log_evidence > others + 0.5 * SAME
 }
 
 fn sort(tried: &mut [Tried]) {

@@ -17,11 +17,11 @@ pub(super) struct Scored {
     pub(super) extension: Extension,
 }
 
-/// Effects that are tried on a model: those that some run shows and that are not in it.
+/// What is tried on a model: effects and laws that some run shows and that are not in it.
 fn tried(survey: &Survey, fit: &Fit) -> Vec<&'static Effect> {
     let known = |id: &str| fit.extensions.iter().any(|e| e.effect.id == id);
     let mut kept: Vec<&'static Effect> = Vec::new();
-    for effect in effects::all() {
+    for effect in effects::weighed() {
         let shown = survey.runs.iter().any(|run| (effect.shows)(&run.at));
         let twin = effect
             .always_equivalent

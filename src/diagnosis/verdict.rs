@@ -131,7 +131,8 @@ pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
         .cloned()
         .collect();
     let is_left = untold_left.iter().any(Leftover::is_sure);
-    let untold = is_left && excess(&untold_left) > MOST_LEFT * excess(&left_before);
+    let is_part = is_left && excess(&untold_left) > MOST_LEFT * excess(&left_before);
+    let untold = is_part || grown.is_unnamed;
     if untold {
         suspects = causes.iter().map(|cause| cause.effect).collect();
         causes.clear();

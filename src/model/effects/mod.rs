@@ -46,6 +46,7 @@ mod tank_residual_wave;
 mod tank_slow_release;
 mod tank_unsteady_speed;
 mod tank_wall_reflection;
+mod unnamed_by_quadrant;
 
 use super::effect::{Circumstances, Effect};
 use super::term::Base;
@@ -100,6 +101,10 @@ pub const EFFECTS: [Effect; 46] = [
     tank_coupled_mode::EFFECT,
 ];
 
+/// Laws that no cause in the table has, weighed beside the effects: where one of them does best, the
+/// cause is none of these.
+const UNNAMED: [Effect; 1] = [unnamed_by_quadrant::EFFECT];
+
 /// Effects of which no roll test says anything, and why.
 pub const UNTESTABLE: [(&str, &str); 4] = [
     ("instrument.roll_gain", STATIC),
@@ -121,6 +126,17 @@ pub fn effect(id: &str) -> Option<&'static Effect> {
 pub fn all() -> &'static [Effect] {
     static TABLE: [Effect; EFFECTS.len()] = EFFECTS;
     &TABLE
+}
+
+/// Every effect, and the laws that no cause in the table has.
+pub fn weighed() -> impl Iterator<Item = &'static Effect> {
+    static LAWS: [Effect; UNNAMED.len()] = UNNAMED;
+    all().iter().chain(&LAWS)
+}
+
+/// Whether a law is one that no cause in the table has.
+pub fn is_unnamed(id: &str) -> bool {
+    UNNAMED.iter().any(|law| law.id == id)
 }
 
 /// The base equation that reads with an effect as `base` reads without it, where there is one.
