@@ -18,6 +18,8 @@ pub struct Leftover {
     pub rms: f64,
     /// Power of the roll's band above the noise, as a share of the channel's variance [-].
     pub share: f64,
+    /// The share that an error of the clock leaves of any roll [-].
+    pub clock_share: f64,
     /// Standard deviations by which the power of the roll's band exceeds the noise [-].
     pub band_z: f64,
     /// The same of the strongest single frequency, as the logarithm of its odds.
@@ -39,10 +41,15 @@ const SURE_BAND: f64 = 6.0;
 /// The same for the logarithm of the odds of one frequency.
 const SURE_LINE: f64 = 10.0;
 
+/// Slow error of a serial instrument's clock [s]: what is allowed behind an adapter that delivers
+/// every 16 ms.
+const CLOCK_S: f64 = 1e-3;
+
 impl Leftover {
-    /// Whether something is left for sure.
+    /// Whether something is left for sure that is no error of the clock.
     pub fn is_sure(&self) -> bool {
-        self.band_z > SURE_BAND || self.line_log_odds > SURE_LINE
+        let is_structure = self.band_z > SURE_BAND || self.line_log_odds > SURE_LINE;
+        is_structure && self.share > self.clock_share
     }
 }
 
@@ -107,6 +114,7 @@ fn channel_leftover(
         channel,
         rms,
         share: ((sum - n_band) * mean_noise / n as f64 * 2.0 / variance.max(1e-30)).max(0.0),
+        clock_share: (run.at.rolling_rad_s * CLOCK_S).powi(2),
         band_z: (sum - n_band) / sd,
         line_log_odds,
         frequency_rad_s: (strongest + 1) as f64 * bin_rad_s,
