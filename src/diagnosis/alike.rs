@@ -81,7 +81,7 @@ pub(super) fn is_same(
     let (most, as_well) = (explained(survey, before, favourite), explained(survey, before, rival));
     let room = SAME.max(left.min(ALIKE_SHARE * most));
     // What is far less probable is no equal, whatever scatter lets it explain.
-    let is_near = behind < SAME.max(ALIKE_SHARE * (gained + behind));
+    let is_near = behind < SAME.max(left.min(ALIKE_SHARE * (gained + behind)));
     let explains_it = gained > ENTERS && most - as_well < room && is_near;
     let is_as_probable = 2.0 * behind < SAME && gained > 0.5 * ENTERS;
     is_as_probable || (explains_it && !is_of_most_runs(survey, rival))

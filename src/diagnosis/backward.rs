@@ -32,15 +32,22 @@ pub(super) fn check_backward(
             entered.remove(e);
             continue;
         }
-        let rivals: Vec<Scored> = score(survey, &without.fit, noise)
+        // A rest that does not settle judges nothing: what was told when it entered stays.
+        if without.promised > SAME {
+            e += 1;
+            continue;
+        }
+        // What could not be told from it as it entered is asked again, whatever its score.
+        let before = &entered[e].equivalent_to;
+        let (known, other): (Vec<Scored>, Vec<Scored>) = score(survey, &without.fit, noise)
             .into_iter()
             .filter(|s| {
                 let id = s.extension.effect.id;
-                let is_other = id != taken.effect.id && !effects::is_unnamed(id);
-                is_other && s.log_bayes_factor > 0.3 * missed
+                id != taken.effect.id && !effects::is_unnamed(id)
             })
-            .take(4)
-            .collect();
+            .partition(|s| before.contains(&s.extension.effect.id));
+        let other = other.into_iter().filter(|s| s.log_bayes_factor > 0.3 * missed).take(4);
+        let rivals: Vec<Scored> = known.into_iter().chain(other).collect();
         let tried = fit_all(survey, &without, &rivals, noise);
         let left = sure_excess(&leftovers(survey, &current.fit));
         entered[e].log_bayes_factor = missed;

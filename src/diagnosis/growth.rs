@@ -243,11 +243,11 @@ fn winner(
 /// Whether an effect takes its part of what is left for sure: what removes a little of a large
 /// remainder is not its cause, whatever its odds.
 fn explains_enough(before: &[Leftover], after: &[Leftover]) -> bool {
-    if !before.iter().any(Leftover::is_sure) {
+    if !before.iter().any(Leftover::is_structure) {
         return true;
     }
     // A ringing above the frequencies of roll is taken for noise until its cause is known.
-    let sure = before.iter().zip(after).filter(|(before, _)| before.is_sure());
+    let sure = before.iter().zip(after).filter(|(before, _)| before.is_structure());
     let (n_sure, n_mended) = sure.fold((0, 0), |(all, mended), (before, after)| {
         let is_mended = after.rms.powi(2) < (1.0 - ENOUGH) * before.rms.powi(2);
         (all + 1, mended + usize::from(is_mended))
@@ -262,7 +262,7 @@ pub(super) fn excess(all: &[Leftover]) -> f64 {
 
 /// The same of the channels in which something is left for sure: noise alone adds up too.
 pub(super) fn sure_excess(all: &[Leftover]) -> f64 {
-    all.iter().filter(|l| l.is_sure()).map(|l| l.excess).sum()
+    all.iter().filter(|l| l.is_structure()).map(|l| l.excess).sum()
 }
 
 /// What a fit leaves of every channel of every run.

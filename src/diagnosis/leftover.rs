@@ -46,10 +46,14 @@ const SURE_LINE: f64 = 10.0;
 const CLOCK_S: f64 = 1e-3;
 
 impl Leftover {
+    /// Whether something is left for sure.
+    pub(super) fn is_structure(&self) -> bool {
+        self.band_z > SURE_BAND || self.line_log_odds > SURE_LINE
+    }
+
     /// Whether something is left for sure that is no error of the clock.
     pub fn is_sure(&self) -> bool {
-        let is_structure = self.band_z > SURE_BAND || self.line_log_odds > SURE_LINE;
-        is_structure && self.share > self.clock_share
+        self.is_structure() && self.share > self.clock_share
     }
 }
 

@@ -101,8 +101,8 @@ pub const EFFECTS: [Effect; 46] = [
     tank_coupled_mode::EFFECT,
 ];
 
-/// Laws that no cause in the table has, weighed beside the effects: where one of them does best, the
-/// cause is none of these.
+/// Laws that no cause in the table has, weighed beside the effects: where one of them does best,
+/// the cause is none of these.
 const UNNAMED: [Effect; 1] = [unnamed_by_quadrant::EFFECT];
 
 /// Effects of which no roll test says anything, and why.
