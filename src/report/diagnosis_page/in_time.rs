@@ -43,8 +43,8 @@ fn figure(page: &DiagnosisPage, i: usize, pair: &(&Unexplained, &Unexplained)) -
     }
     let told = |left: &Unexplained| {
         format!(
-            "{} % of the damping moment, {} % of the whole; the band excludes nil in {} % of the \
-             record",
+            "{}\u{a0}% of the damping moment, {}\u{a0}% of the whole; the band excludes nil in \
+             {}\u{a0}% of the record",
             significant(100.0 * left.share_of_damping, 2),
             significant(100.0 * left.share, 2),
             fixed(100.0 * left.outside, 0)
