@@ -289,6 +289,21 @@ mod tests {
     }
 
     #[test]
+    fn columns_that_count_from_an_earlier_place_leave_and_give_the_same() {
+        let columns =
+            [vec![1.0, 1.0, 1.0, 1.0], vec![0.0, 1.0, 2.0, 3.0], vec![1.0, 3.0, 5.0, 8.0]];
+        let here = Products::of(&columns).eliminate(1);
+        let mut earlier = here.clone();
+        earlier.refer_back(0, &[0.4]);
+        // The slope of 2.3 is 2.7 from where it stood 0.4 ago; the other coefficient is the same.
+        assert!((here.back(&[2.3])[0] - earlier.back(&[2.7])[0]).abs() < 1e-12);
+        let steps = [here, earlier].map(|eliminated| eliminated.rest.eliminate(1));
+        let [here, earlier] = &steps;
+        assert!((earlier.back(&[])[0] - here.back(&[])[0] - 0.4).abs() < 1e-12);
+        assert!((earlier.rest.at(0, 0) - here.rest.at(0, 0)).abs() < 1e-12);
+    }
+
+    #[test]
     fn a_side_is_eliminated_as_if_it_had_been_among_the_columns() {
         let column = |seed: u32| -> Vec<f64> {
             (0..9).map(|i| f64::from((seed * 7 + i * i * (3 + seed)) % 11)).collect()

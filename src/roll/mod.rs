@@ -4,3 +4,4 @@ pub mod damping;
 pub mod equation;
 pub mod exciting_moment;
 pub mod response;
+pub mod wall_waves;

@@ -4,6 +4,7 @@ use crate::model::effect::{
     Acts, Circumstances, Effect, Instant, Law, Layer, Parameter, Scope, Tap, each,
 };
 use crate::model::number::Number;
+use crate::roll::wall_waves;
 use crate::run::RunKind;
 
 /// The effect.
@@ -24,12 +25,9 @@ pub(super) const EFFECT: Effect = Effect {
     reference: "ITTC 7.5-02-07-02.1: tank interference; deep-water dispersion",
 };
 
-/// Waves of the model reach its sides again only below this `w V/g` [-].
-const LIMIT: f64 = 0.305;
-
 /// `w V/g` over its limit.
 fn outrun(run: &Circumstances) -> f64 {
-    run.rolling_rad_s * run.speed_m_s / run.gravity_m_s2 / LIMIT
+    wall_waves::outrun(run.rolling_rad_s, run.speed_m_s, run.gravity_m_s2)
 }
 
 fn in_reach(run: &Circumstances) -> bool {
@@ -40,7 +38,7 @@ fn in_reach(run: &Circumstances) -> bool {
 fn delays(run: &Circumstances) -> Vec<Vec<f64>> {
     match run.clear_width_m {
         Some(width_m) => {
-            let trip_s = width_m * 2.0 * run.natural_rad_s / run.gravity_m_s2;
+            let trip_s = wall_waves::trip_s(width_m, run.natural_rad_s, run.gravity_m_s2);
             each(&[0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3].map(|share| share * trip_s))
         }
         None => each(&[8.0, 10.0, 12.0, 14.0, 17.0, 20.0]),

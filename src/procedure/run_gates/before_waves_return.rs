@@ -2,6 +2,7 @@
 
 use super::Asked;
 use crate::procedure::gate::{Answer, Gate, ITTC};
+use crate::roll::wall_waves;
 use crate::run::RunKind;
 
 const GATE: Gate = Gate {
@@ -10,10 +11,6 @@ const GATE: Gate = Gate {
     unit: "s",
     source: ITTC,
 };
-
-/// Waves of the model reach its sides again only below this `w V/g` [-] (ITTC 7.5-02-07-02.1, a
-/// tank four times as wide as the model is long).
-const OUTRUN: f64 = 0.305;
 
 #[expect(clippy::unnecessary_wraps, reason = "every gate has the same shape")]
 pub(super) fn answer(Asked { campaign, run }: &Asked<'_>) -> Option<Answer> {
@@ -27,15 +24,15 @@ pub(super) fn answer(Asked { campaign, run }: &Asked<'_>) -> Option<Answer> {
     let Some(width_m) = campaign.tank.width_m else {
         return Some(Answer::untold(GATE, "width_m is not given in [tank] of campaign.toml"));
     };
-    // Half the clear water to a wall and back, at the group velocity g/(2 w) in deep water.
-    let trip_s = (width_m - campaign.hull.beam_m) * 2.0 * frequency_rad_s / gravity_m_s2;
+    let clear_m = width_m - campaign.hull.beam_m;
+    let trip_s = wall_waves::trip_s(clear_m, frequency_rad_s, gravity_m_s2);
     // A steady stretch is cut from a motion that began with the end of the rest before it.
     let began_s = match (found.kind, found.still) {
         (RunKind::Forced, Some(still)) => still.end_s,
         _ => found.start_s,
     };
     let used_s = found.end_s - began_s;
-    if frequency_rad_s * run.speed_m_s.abs() / gravity_m_s2 >= OUTRUN {
+    if wall_waves::outrun(frequency_rad_s, run.speed_m_s.abs(), gravity_m_s2) >= 1.0 {
         let words = format!("at {:.2} m/s the model outruns its waves", run.speed_m_s.abs());
         return Some(Answer { met: Some(true), ..Answer::at_most(GATE, used_s, trip_s, words) });
     }
