@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use rolltank::campaign::{self, Campaign};
+use rolltank::campaign;
 use rolltank::diagnosis::{Diagnosis, Observation, Verdict, diagnose};
 use rolltank::model::effects;
 use rolltank::model::model_file::ModelFile;

@@ -5,7 +5,7 @@ use crate::hidden_tank::campaign::Asked;
 use crate::hidden_tank::draw::Draw;
 use crate::hidden_tank::effects::{CATALOGUED, INVENTED};
 use crate::hidden_tank::plan::RunSet;
-use crate::hidden_tank::score::{UNTESTABLE, are_companions, in_class};
+use crate::hidden_tank::score::{COMPANIONS, UNTESTABLE, in_class};
 
 /// Pairs of the whole matrix, and the seeds of clean campaigns by one seed of the others.
 const PAIRS_BY_SEED: usize = 5;
@@ -74,4 +74,9 @@ fn pairs(arguments: &Arguments, seed: u64) -> Vec<Asked> {
         }
     }
     all
+}
+
+/// Whether one of two effects brings the other along, so that both are one.
+fn are_companions(one: &str, other: &str) -> bool {
+    COMPANIONS.iter().any(|pair| *pair == (one, other) || *pair == (other, one))
 }

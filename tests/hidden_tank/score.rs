@@ -27,7 +27,7 @@ pub(crate) const UNTESTABLE: [&str; 4] = [
 
 /// What an effect brings along in a run that starts later than it: a zero that drifts from the
 /// start of the recording has moved by the release. Naming this as well is no wrong name.
-const COMPANIONS: [(&str, &str); 3] = [
+pub(crate) const COMPANIONS: [(&str, &str); 3] = [
     ("instrument.roll_drift", "instrument.roll_offset"),
     ("instrument.roll_drift", "restoring.heel"),
     ("instrument.force_drift", "instrument.force_offset"),
@@ -58,11 +58,6 @@ pub(crate) fn in_class(one: &str, other: &str, set: RunSet) -> bool {
         || CLASSES.iter().any(|(names, sets)| {
             sets.contains(&set) && names.contains(&one) && names.contains(&other)
         })
-}
-
-/// Whether one of two effects brings the other along, so that both are one.
-pub(crate) fn are_companions(one: &str, other: &str) -> bool {
-    COMPANIONS.iter().any(|pair| *pair == (one, other) || *pair == (other, one))
 }
 
 /// Scores a verdict against what hides; `stands_for(cause, hidden)` is asked last, whether on
