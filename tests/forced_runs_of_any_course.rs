@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 use rolltank::inverse::identification::Method;
 use rolltank::inverse::{Setting, identify};
-use rolltank::run::{Run, RunEnd, RunKind, Series};
+use rolltank::run::{Run, RunEnd, RunKind, Series, Timing};
 
 const INERTIA_KG_M2: f64 = 1.675;
 const RESTORING_N_M: f64 = 79.85;
@@ -108,6 +108,7 @@ fn run(roll: &[f64], moment: &[f64], time_s: &[f64], rng: &mut ChaCha8Rng) -> Ru
         drive: series(noisy(moment, MOMENT_NOISE_N_M)),
         still: None,
         excitation_rad_s: None,
+        timing: Timing::default(),
     }
 }
 

@@ -40,6 +40,7 @@ mod sampler_says_what_it_did;
 mod synthetic_results;
 mod synthetic_roll;
 mod the_band_is_sharp;
+mod the_clock_bound_is_in_forced_damping;
 mod the_command_line;
 mod the_daemon_is_watched_and_told_to_reload;
 mod the_demo_is_seen_from_first_sample_to_report;

@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use crate::synthetic_roll::{STEP_S, Truth};
-use devices::{Quantity, channel::Counts};
+use devices::Quantity;
+use devices::channel::{Brought, Counts};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use replay::Columns;
@@ -16,7 +17,7 @@ use rolltank::inverse::identification::{
 };
 use rolltank::results::{IdentifiedRun, Overview, RejectedStretch, Results, Sampling};
 use rolltank::roll::exciting_moment::{Arm, Exciter};
-use rolltank::run::{Run, RunEnd, RunKind, Series, Still};
+use rolltank::run::{Run, RunEnd, RunKind, Series, Still, Timing};
 
 /// Noise of the roll channel [rad].
 const NOISE_RAD: f64 = 0.000_9;
@@ -168,6 +169,7 @@ fn identified(
             .iter()
             .map(|(_, rate)| -truth.damping(*rate) + 6.0 * normal(random))
             .collect(),
+        skew: None,
         chain: None,
         remarks: Vec::new(),
     };
@@ -178,7 +180,11 @@ fn identified(
         speed_m_s: froude * 4.952,
         froude,
         sampling: Sampling::of(&run),
-        counts: vec![(Quantity::Roll, Counts::default())],
+        brought: vec![Brought {
+            quantity: Quantity::Roll,
+            counts: Counts::default(),
+            bound_s: 2e-4,
+        }],
         run,
         identification,
     }
@@ -201,6 +207,7 @@ fn found(truth: &Truth, froude: f64, roll: Series, moment_n_m: &[f64]) -> Run {
         roll,
         still: Some(still),
         excitation_rad_s: forced.then_some(truth.excitation_rad_s),
+        timing: Timing::default(),
     }
 }
 

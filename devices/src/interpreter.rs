@@ -97,6 +97,7 @@ struct ChannelState {
     channel: Channel,
     counts: Counts,
     last_time_s: f64,
+    last_bound_s: f64,
 }
 
 /// Two samples of one channel are at least so far apart [s], whatever the clock's line does.
@@ -120,6 +121,7 @@ impl Interpreter {
             channel: channel.clone(),
             counts: Counts::default(),
             last_time_s: f64::NEG_INFINITY,
+            last_bound_s: 0.0,
         };
         Ok(Self {
             device: config.name.clone(),
@@ -144,6 +146,7 @@ impl Interpreter {
         begun.map(|state| Counted {
             quantity: state.channel.quantity,
             time_s: state.last_time_s,
+            bound_s: state.last_bound_s,
             counts: state.counts,
         })
     }
@@ -298,7 +301,7 @@ impl ChannelState {
         let (value, quality) = self.channel.value(reading.raw, reading.quality.with(quality));
         // The clock's line may move back a little; a channel's time does not.
         let time_s = stamp.time_s.max(self.last_time_s + STEP_MIN_S);
-        self.last_time_s = time_s;
+        (self.last_time_s, self.last_bound_s) = (time_s, stamp.bound_s);
         self.counts.received += 1;
         self.counts.over_range += u64::from(quality.has(Quality::OVER_RANGE));
         Measured {

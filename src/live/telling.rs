@@ -39,7 +39,7 @@ impl UnderWay<'_> {
     }
 
     fn found_run(&mut self, found: &FoundRun, time_s: f64) {
-        let FoundRun { start_s, end_s, end, ref counts, .. } = *found;
+        let FoundRun { start_s, end_s, end, ref brought, .. } = *found;
         let run = name_of(found);
         let kind = match found.kind {
             RunKind::Decay => "decay",
@@ -54,8 +54,7 @@ impl UnderWay<'_> {
             condition,
             start_s,
         }));
-        let counts = counts.iter().map(|(quantity, counts)| ChannelCounts::of(*quantity, *counts));
-        let counts = counts.collect();
+        let counts = brought.iter().map(ChannelCounts::of).collect();
         let reason = end.clause().to_owned();
         let exit_status = ExitStatus::Success;
         let stop = RunStop { time_s, run, start_s, end_s, exit_status, reason, counts };

@@ -148,7 +148,7 @@ impl LiveResults<'_> {
                 // A worker that panicked has no answer, and the scope passes its panic on.
                 let identified = identified.recv().ok()?;
                 let reason = identified.identification.as_ref().err().cloned();
-                match self.collector.keep(index, identified, &found.counts) {
+                match self.collector.keep(index, identified, &found.brought) {
                     Some(run) => LiveStep::Identified { found, run, overview },
                     None => LiveStep::Refused { found, reason: reason.unwrap_or_default() },
                 }

@@ -129,7 +129,7 @@ pub fn replay(
                 Heard::Run { index, found, identified, overview } => {
                     // A worker that panicked has no answer, and the scope passes its panic on.
                     let Ok(identified) = identified.recv() else { break };
-                    if let Some(run) = collector.keep(index, identified, &found.counts) {
+                    if let Some(run) = collector.keep(index, identified, &found.brought) {
                         on_run(run, &overview).map_err(|source| PipelineError::Listener {
                             run: run.id.clone(),
                             source,
