@@ -14,9 +14,9 @@
 use crate::inverse::identification::{MomentHistory, Skew};
 use crate::run::Timing;
 
-/// A remark for a run that does not tell how well its channels lie in time.
-pub(super) const NOT_STATED: &str = "the time between roll and moment is known to nobody: no \
-    bound of it is stated, and none is in the bands";
+/// A remark for a run of which nobody knows how its channels lie in time.
+pub(super) const NOT_STATED: &str = "no bound of the time between roll and moment is stated, so \
+    that none is in the bands";
 
 /// What the timing of a run leaves unsure, where it is stated and not nil.
 pub(super) fn sd_s(timing: &Timing) -> f64 {
