@@ -18,6 +18,7 @@ mod diagnosing;
 mod error;
 mod event;
 mod keeping;
+mod provisional;
 mod reporting;
 mod session;
 mod showing;

@@ -10,6 +10,7 @@ use replay::Note;
 use super::Options;
 use super::asking::Asking;
 use super::overview::OverviewBuilder;
+use super::so_far::RunSoFar;
 use super::workers::{Identified, Workers};
 use crate::campaign::{Campaign, Recording};
 use crate::results::Overview;
@@ -92,6 +93,20 @@ impl<'a> Listening<'a> {
     /// Whether neither a run nor any motion is under way.
     pub(super) fn is_at_rest(&self) -> bool {
         self.finder.is_at_rest()
+    }
+
+    /// The run under way as it would be found and asked about if the stream ended now.
+    pub(super) fn so_far(&self) -> Option<RunSoFar> {
+        let mut run = self.finder.so_far()?;
+        run.timing = self.timing(run.start_s, run.end_s);
+        Some(RunSoFar {
+            number: self.n_found + 1,
+            setting: self.asking.setting(run.kind, self.drive_is_moment).ok()?,
+            index: self.index,
+            brought: self.brought(run.start_s, run.end_s),
+            overview: self.overview.so_far(self.recording, Vec::new()),
+            run,
+        })
     }
 
     /// Takes samples in the order in which they came, and what instruments had counted when so many

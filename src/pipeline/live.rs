@@ -11,6 +11,7 @@ use super::Options;
 use super::collect::{Collector, joined};
 use super::histories;
 use super::listening::{FoundRun, Heard, Listening, Unheard};
+use super::so_far::RunSoFar;
 use super::workers::Workers;
 use crate::campaign::Campaign;
 use crate::results::{IdentifiedRun, Overview, Results};
@@ -104,6 +105,11 @@ impl LiveRuns<'_> {
     pub fn tell_again(&self) {
         // A full queue brings its own results soon.
         self.heard.try_send(Heard::TellAgain).ok();
+    }
+
+    /// The run under way as it would be if the recording ended now.
+    pub fn so_far(&self) -> Option<RunSoFar> {
+        self.listening.so_far()
     }
 
     /// Whether neither a run nor any motion is under way.

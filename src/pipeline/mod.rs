@@ -20,6 +20,7 @@ mod play;
 mod printing;
 mod read_ahead;
 mod sha256;
+mod so_far;
 mod survey;
 mod workers;
 
@@ -41,6 +42,7 @@ pub use listening::FoundRun;
 pub use live::{Found, LiveResults, LiveRuns, LiveStep, forget_histories, live};
 pub use names::labels;
 pub use printing::{BROWSER_VARIABLE, PRINTED_REPORT, PrintError, print_report};
+pub use so_far::RunSoFar;
 pub use survey::{Surveyed, survey};
 
 use collect::Collector;
