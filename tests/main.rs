@@ -16,6 +16,7 @@ mod dense_posterior;
 mod draws_belong_together;
 mod driven_runs_are_identified;
 mod every_protocol_is_recorded_and_decoded_anew;
+mod everything_at_once_for_hours_loses_nothing;
 mod forced_runs_of_any_course;
 mod good_practice_is_answered;
 mod hidden_effects_are_named;

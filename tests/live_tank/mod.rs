@@ -14,9 +14,9 @@ use devices::setup::DeviceConfig;
 use rolltank::campaign;
 
 pub(crate) use daemon::Daemon;
-pub(crate) use signals::{B1_PER_S, RELEASED_S};
+pub(crate) use signals::{B1_PER_S, RELEASED_S, ROUND_S};
 
-use signals::{ROUND_S, raw_force, raw_roll, raw_speed};
+use signals::{raw_force, raw_roll, raw_speed};
 
 /// The campaign file of the tank, its ports below the folder.
 pub(crate) const CAMPAIGN: &str = r#"name = "emulated tank"
@@ -50,6 +50,9 @@ quantity = "speed"
 field = 0
 calibration = { curve = { gain = 1e-3 } }
 "#;
+
+/// The name of a device that samples at 2 kHz; every other does at 100 Hz.
+pub(crate) const FAST: &str = "fast board";
 
 /// A force cell that nobody has calibrated.
 const CELL: &str = r#"[[device]]
@@ -117,7 +120,8 @@ impl LiveTank {
     fn plugged_in(&self, device: &DeviceConfig) -> EmulatedPort {
         let (quantity, is_calm) = (device.channels[0].quantity, self.is_calm);
         let load_counts = Arc::clone(&self.load_counts);
-        let signal = move |_field: usize, time_s: f64| match quantity {
+        let signal = move |field: usize, time_s: f64| match quantity {
+            _ if field > 0 => raw_force(time_s),
             // The middle of the rest between two rounds.
             devices::Quantity::Roll if is_calm => raw_roll((time_s % 2.0) + 1.0),
             devices::Quantity::Roll => raw_roll(time_s),
@@ -125,7 +129,8 @@ impl LiveTank {
             _ => raw_force(time_s) + load_counts.load(Ordering::Relaxed) as f64,
         };
         let settings = &device.settings;
-        let other_end = emulator(&device.driver, settings, 100.0, Box::new(signal));
+        let rate_hz = if device.name == FAST { 2000.0 } else { 100.0 };
+        let other_end = emulator(&device.driver, settings, rate_hz, Box::new(signal));
         let other_end = other_end.expect("the settings are good");
         let clock = Arc::clone(&self.clock) as Arc<dyn Clock>;
         EmulatedPort::plug_in(&device.port, other_end, device.line.byte_ns(), clock)
