@@ -132,6 +132,9 @@ fn drawn(course: Course, is_imposed: bool, seed: u64) -> (Run, Damping) {
     (run(&roll, &moment, &time_s, &mut rng), law)
 }
 
+/// By how much a moment is stamped late [s].
+const LATE_S: f64 = 1e-4;
+
 #[test]
 fn a_moment_that_is_stamped_late_moves_the_damping_as_its_skew_says() {
     let courses = [(Course::Steady, Some(6.2)), (Course::Swept, None), (Course::Irregular, None)];
@@ -144,7 +147,6 @@ fn a_moment_that_is_stamped_late_moves_the_damping_as_its_skew_says() {
         assert!(untold.skew.is_none() && untold.remarks.iter().any(|r| r.contains("no bound")));
         let told = identify(&Run { timing, ..run.clone() }, &SETTING).expect("it can");
         let skew = told.skew.expect("its bounds are stated");
-        const LATE_S: f64 = 1e-4;
         let mut late = run.clone();
         late.drive.time_s.iter_mut().for_each(|time_s| *time_s += LATE_S);
         let late = identify(&late, &SETTING).expect("it can still be identified");

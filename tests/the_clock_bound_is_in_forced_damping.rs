@@ -19,7 +19,7 @@ use rolltank::results::IdentifiedRun;
 use rolltank::roll::damping::cubic_weight;
 use rolltank::uncertainty;
 
-/// Roll and force on boards of their own, or, with `PORTS` alike, on one.
+/// Whatever boards are added read a model on a rod.
 const CAMPAIGN: &str = r#"name = "forced rolling"
 [hull]
 length_pp_m = 2.5
@@ -45,19 +45,19 @@ const ENDS_S: f64 = 60.0;
 const PER_UNIT: f64 = 1e5;
 
 fn board(name: &str, quantities: &[&str]) -> String {
-    let mut text = format!(
+    let device = format!(
         "[[device]]\nname = \"{name}\"\nprofile = \"cobs-board\"\nport = \"/dev/{name}\"\n\
          settings = {{ fields = {} }}\n",
         quantities.len()
     );
-    for (field, quantity) in quantities.iter().enumerate() {
-        text.push_str(&format!(
+    let gain = 1.0 / PER_UNIT;
+    let channels = quantities.iter().enumerate().map(|(field, quantity)| {
+        format!(
             "[[device.channel]]\nquantity = \"{quantity}\"\nfield = {field}\n\
-             calibration = {{ curve = {{ gain = {} }} }}\n",
-            1.0 / PER_UNIT
-        ));
-    }
-    text
+             calibration = {{ curve = {{ gain = {gain} }} }}\n"
+        )
+    });
+    [device].into_iter().chain(channels).collect()
 }
 
 fn roll_rad(time_s: f64) -> f64 {

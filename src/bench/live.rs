@@ -50,16 +50,17 @@ pub fn report_latency(folder: &Path) -> Result<Vec<Figure>, LiveError> {
     .flat_map(|(name, times_s)| figures(name, times_s))
     .collect();
     let before = &runs.told_before;
-    let first = before.iter().map(|of| (of.first_ends_later_s, of.first_moved_sd)).collect();
-    let last = before.iter().map(|of| (of.last_ends_later_s, of.last_moved_sd)).collect();
-    all.extend(agreement("first report that holds a run", first));
-    all.extend(agreement("last provisional report of a run", last));
+    let first: Vec<_> =
+        before.iter().map(|of| (of.first_ends_later_s, of.first_moved_sd)).collect();
+    let last: Vec<_> = before.iter().map(|of| (of.last_ends_later_s, of.last_moved_sd)).collect();
+    all.extend(agreement("first report that holds a run", &first));
+    all.extend(agreement("last provisional report of a run", &last));
     Ok(all)
 }
 
 /// How often some provisional reports end where the final one does, and how far their damping lies
 /// from its.
-fn agreement(name: &str, reports: Vec<(Option<f64>, Option<f64>)>) -> [Figure; 2] {
+fn agreement(name: &str, reports: &[(Option<f64>, Option<f64>)]) -> [Figure; 2] {
     let n_runs = reports.len();
     let ends_s: Vec<f64> = reports.iter().filter_map(|(later_s, _)| *later_s).collect();
     let n_alike = ends_s.iter().filter(|later_s| later_s.abs() < ALIKE_S).count();

@@ -3,8 +3,9 @@
 //! ```text
 //! port threads -> Event -> one loop -> recorder            (keeping)
 //!                           |    \---> run finder -> identifying threads -> reporter (reporting)
-//!                           |                                              |
-//!                           |                                              \---> (diagnosing)
+//!                           |              |                               |
+//!                           |              |                               \---> (diagnosing)
+//!                           |              \---> the run so far (provisional)
 //!                           \---> board -> page
 //! ```
 //!

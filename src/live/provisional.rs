@@ -145,7 +145,7 @@ impl Provisional {
 
     /// The recording has ended.
     pub(super) fn withdraw(&self) {
-        self.0.remove(&mut self.0.files());
+        self.0.withdraw();
     }
 }
 
@@ -153,6 +153,13 @@ impl Shared {
     fn files(&self) -> MutexGuard<'_, Files> {
         // Whoever panicked left at worst a file that is there.
         self.files.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn withdraw(&self) {
+        let mut files = self.files();
+        if files.is_there {
+            self.remove(&mut files);
+        }
     }
 
     fn remove(&self, files: &mut Files) {
@@ -173,14 +180,10 @@ fn answer(
 ) {
     while let Ok(offer) = asked.recv() {
         let started_ns = clock.now_ns();
-        match offer {
-            Some(offer) => tell(campaign, shared, offer, clock),
-            None => {
-                let mut files = shared.files();
-                if files.is_there {
-                    shared.remove(&mut files);
-                }
-            }
+        if let Some(offer) = offer {
+            tell(campaign, shared, offer, clock);
+        } else {
+            shared.withdraw();
         }
         let now_ns = clock.now_ns();
         shared.rests_until_ns.store(2 * now_ns - started_ns, Ordering::Release);
