@@ -116,6 +116,7 @@ impl Interpreter {
             latency_s,
             age_s: config.pace.age_s,
             lag_s: config.lag.delay_s(),
+            lag_bound_s: config.lag.bound_s(),
         };
         let state = |channel: &Channel| ChannelState {
             channel: channel.clone(),
