@@ -1,6 +1,6 @@
 //! The grown model looked back on: effects that are not missed leave, others may take their place.
 
-use super::alike::{SAME, contains, is_same};
+use super::alike::{SAME, contains, is_approximate, is_same};
 use super::growth::{ENTERS, Entered, leftovers, sure_excess};
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score};
@@ -61,7 +61,12 @@ pub(super) fn check_backward(
         let better = tried
             .into_iter()
             .filter(|one| is_newest_plausible(survey, &one.settled))
-            .filter(|one| one.settled.log_evidence > current.log_evidence + 0.5 * SAME)
+            .filter(|one| {
+                // A part that does as well is better than the whole.
+                let is_part = contains(taken.effect.id, one.id);
+                let margin = if is_part { -0.25 * SAME } else { 0.5 * SAME };
+                one.settled.log_evidence > current.log_evidence + margin
+            })
             .max_by(|a, b| a.settled.log_evidence.total_cmp(&b.settled.log_evidence));
         if let Some(better) = better {
             // The newcomer takes the place of the one that was taken out.
@@ -76,6 +81,22 @@ pub(super) fn check_backward(
         e += 1;
     }
     (current, entered)
+}
+
+/// A model in which other effects stand in the place of an approximate one that was no more than
+/// what two of them look like; `newest` is what it left of itself. None where there is none.
+pub(super) fn instead(
+    survey: &Survey,
+    grown: Settled,
+    known: &[Entered],
+    newest: Entered,
+    noise: &[ChannelNoise],
+) -> Option<(Settled, Vec<Entered>)> {
+    let evidence = grown.log_evidence;
+    let both = known.iter().cloned().chain([newest]).collect();
+    let (other, entered) = check_backward(survey, grown, both, noise);
+    let is_exact = entered.len() > known.len() && !entered.iter().any(|e| is_approximate(e.id));
+    (is_exact && other.log_evidence > evidence + 0.5 * SAME).then_some((other, entered))
 }
 
 /// A model with one effect fewer, where another reading of a cause makes it needless.

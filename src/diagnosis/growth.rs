@@ -1,28 +1,18 @@
 //! The model grows by one effect at a time until nothing more is to be named.
 
-use super::alike::{SAME, contains, is_approximate, is_same};
-use super::backward::check_backward;
+use super::alike::SAME;
+use super::backward::{check_backward, instead};
+use super::entry::{Best, best};
 use super::leftover::{self, Leftover};
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score};
 use super::settle::{Settled, settle};
 use super::survey::{Fit, Survey};
 use super::trial::{Tried, fit_all, is_newest_plausible, is_plausible};
-use crate::model::{Scope, effects};
+use crate::model::effects;
 
 /// Least logarithm of a Bayes factor at which an effect may enter: one in a thousand by chance.
 pub(super) const ENTERS: f64 = 7.0;
-/// Share of what is left for sure that an effect must take away to enter.
-const ENOUGH: f64 = 0.2;
-/// Share of what an approximate effect removes that it may leave of itself: no other effect.
-const CRUMB: f64 = 0.03;
-/// The same for an effect that each run has of its own, which takes up much of anything.
-const CRUMB_OF_EACH_RUN: f64 = 0.25;
-/// What an effect takes of what is left, over the logarithm of its Bayes factor, where that is
-/// what speaks for it; it would be two if nothing else did.
-const OF_LEFTOVER: f64 = 0.5;
-/// Share of the evidence of any effect below which another is a want of form of the first.
-const CRUMB_OF_EVIDENCE: f64 = 0.01;
 /// Most effects of a model.
 const MOST: usize = 5;
 /// Times that the base model is settled anew with the noise that it left.
@@ -80,10 +70,24 @@ pub(super) fn grow(survey: &Survey) -> Grown {
         }
         implausible.extend(step.implausible);
         is_unnamed = step.is_unnamed;
-        let Some(won) = step.won else { break };
+        match step.best {
+            Best::Enters(settled, newest) => {
+                current = settled;
+                entered.push(newest);
+            }
+            Best::IsCrumb(settled, newest) => {
+                let Some(other) = instead(survey, settled, &entered, newest, &step.noise) else {
+                    break;
+                };
+                (current, entered) = other;
+            }
+            Best::ExplainsTooLittle => {
+                is_unnamed |= entered.is_empty();
+                break;
+            }
+            Best::None => break,
+        }
         noise = step.noise;
-        current = won.0;
-        entered.push(won.1);
     }
     if entered.len() > 1 {
         (current, entered) = check_backward(survey, current, entered, &noise);
@@ -104,8 +108,7 @@ pub(super) fn grow(survey: &Survey) -> Grown {
 
 /// One step of growth.
 struct Step {
-    /// The grown model, if an effect may enter.
-    won: Option<(Settled, Entered)>,
+    best: Best,
     noise: Vec<ChannelNoise>,
     ranking: Vec<(&'static str, f64)>,
     implausible: Vec<(&'static str, f64)>,
@@ -126,7 +129,7 @@ fn step(
     ranking.retain(|(id, _)| !effects::is_unnamed(id));
     let quiet = |ranking| {
         let (noise, implausible) = (noise.to_vec(), Vec::new());
-        Some(Step { won: None, noise, ranking, implausible, is_unnamed: false })
+        Some(Step { best: Best::None, noise, ranking, implausible, is_unnamed: false })
     };
     if scores.first().is_none_or(|s| s.log_bayes_factor < 0.5 * ENTERS) {
         return quiet(ranking);
@@ -135,11 +138,11 @@ fn step(
     // weighed again.
     let mut first = fit_all(survey, before, &scores[..scores.len().min(3)], noise);
     sort(&mut first);
-    let best = &first[0].settled;
-    if best.log_evidence < before.log_evidence {
+    let first_best = &first[0].settled;
+    if first_best.log_evidence < before.log_evidence {
         return quiet(ranking);
     }
-    let noise = survey.noise(&best.fit);
+    let noise = survey.noise(&first_best.fit);
     let current = settle(survey, before.fit.clone(), &noise);
     let scores = score(survey, &current.fit, &noise);
     let worth = 0.1 * scores.first().map_or(0.0, |s| s.log_bayes_factor).max(0.0);
@@ -179,8 +182,8 @@ fn step(
     let is_unnamed = none_of_them(&current, &plausible);
     let known: Vec<Tried> =
         plausible.into_iter().filter(|one| !effects::is_unnamed(one.id)).collect();
-    let won = if is_unnamed { None } else { winner(survey, &current, known, entered) };
-    Some(Step { won, noise, ranking, implausible, is_unnamed })
+    let best = if is_unnamed { Best::None } else { best(survey, &current, known, entered) };
+    Some(Step { best, noise, ranking, implausible, is_unnamed })
 }
 
 /// Whether a law of no known cause explains the runs better than every effect, best first, does.
@@ -196,63 +199,6 @@ fn none_of_them(current: &Settled, plausible: &[Tried]) -> bool {
 
 fn sort(tried: &mut [Tried]) {
     tried.sort_by(|a, b| b.settled.log_evidence.total_cmp(&a.settled.log_evidence));
-}
-
-/// The best of the tried effects, if it may enter, with those that cannot be told from it.
-fn winner(
-    survey: &Survey,
-    current: &Settled,
-    plausible: Vec<Tried>,
-    known: &[Entered],
-) -> Option<(Settled, Entered)> {
-    let best = plausible.first()?;
-    let log_bayes_factor = best.settled.log_evidence - current.log_evidence;
-    if log_bayes_factor < ENTERS {
-        return None;
-    }
-    let (before, after) = (leftovers(survey, &current.fit), leftovers(survey, &best.settled.fit));
-    if !explains_enough(&before, &after) {
-        return None;
-    }
-    let left = excess(&after);
-    let removed = excess(&before) - left;
-    let newest = best.settled.fit.extensions.last();
-    let is_of_each_run = newest.is_some_and(|newest| newest.effect.scope == Scope::Run);
-    // What makes the runs agree better takes nothing from what each of them leaves, and is no
-    // crumb of that.
-    let is_of_leftover = removed > OF_LEFTOVER * log_bayes_factor;
-    let is_crumb = |entered: &Entered| {
-        let share = if is_of_each_run { CRUMB_OF_EACH_RUN } else { CRUMB };
-        let is_rest = is_approximate(entered.id) && removed < share * entered.removed;
-        (is_rest && is_of_leftover)
-            || log_bayes_factor < CRUMB_OF_EVIDENCE * entered.log_bayes_factor
-    };
-    if known.iter().any(is_crumb) {
-        return None;
-    }
-    let equivalent_to = plausible[1..]
-        .iter()
-        .filter(|one| !contains(one.id, best.id))
-        .filter(|one| is_same(survey, current, &best.settled, &one.settled, sure_excess(&after)))
-        .map(|one| one.id)
-        .collect();
-    let entered = Entered { id: best.id, log_bayes_factor, removed, equivalent_to };
-    plausible.into_iter().next().map(|best| (best.settled, entered))
-}
-
-/// Whether an effect takes its part of what is left for sure: what removes a little of a large
-/// remainder is not its cause, whatever its odds.
-fn explains_enough(before: &[Leftover], after: &[Leftover]) -> bool {
-    if !before.iter().any(Leftover::is_structure) {
-        return true;
-    }
-    // A ringing above the frequencies of roll is taken for noise until its cause is known.
-    let sure = before.iter().zip(after).filter(|(before, _)| before.is_structure());
-    let (n_sure, n_mended) = sure.fold((0, 0), |(all, mended), (before, after)| {
-        let is_mended = after.rms.powi(2) < (1.0 - ENOUGH) * before.rms.powi(2);
-        (all + 1, mended + usize::from(is_mended))
-    });
-    excess(before) - excess(after) > ENOUGH * excess(before) || 2 * n_mended >= n_sure
 }
 
 /// What is left beyond the noise, in units of its variance.

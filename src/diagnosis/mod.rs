@@ -12,6 +12,7 @@ mod clipping;
 mod cores;
 mod correction;
 mod elimination;
+mod entry;
 mod facts;
 mod foretold;
 mod gain;

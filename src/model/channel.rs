@@ -94,7 +94,6 @@ pub(super) fn add_tangents(
                 moment_n_m: along(i.moment_n_m, sample, 3),
                 natural_rad_s: i.natural_rad_s.into(),
                 b1_per_s: i.b1_per_s.into(),
-                past: i.past,
                 run: i.run,
             })
             .collect();

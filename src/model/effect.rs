@@ -1,8 +1,7 @@
 //! What an effect is: its equation as functions of an instant, its parameters, its scope.
 
-use super::course::Course;
-use super::history::History;
-use super::number::{Number, Sloped};
+use super::echo::Taps;
+use super::number::Sloped;
 use crate::run::RunKind;
 
 /// One number of an effect.
@@ -169,25 +168,6 @@ impl Recurs {
     }
 }
 
-/// Earlier motion of a run.
-#[derive(Debug, Clone, Copy)]
-pub enum Past<'a> {
-    /// A decay: at rest before its start.
-    Free(&'a History),
-    /// A course that the rod imposes, ever since.
-    Imposed(&'a Course),
-}
-
-impl Past<'_> {
-    /// Roll [rad], rate [rad/s] and acceleration [rad/s2] at an earlier time [s].
-    pub fn motion(&self, time_s: f64) -> [f64; 3] {
-        match self {
-            Self::Free(history) => history.at(time_s),
-            Self::Imposed(course) => course.at(time_s),
-        }
-    }
-}
-
 /// The motion at one instant.
 #[derive(Debug, Clone, Copy)]
 pub struct Instant<'a, N = f64> {
@@ -205,18 +185,8 @@ pub struct Instant<'a, N = f64> {
     pub natural_rad_s: N,
     /// Linear damping of the base equation [1/s].
     pub b1_per_s: N,
-    /// What came before.
-    pub past: Past<'a>,
     /// The run.
     pub run: &'a Circumstances,
-}
-
-impl<N: Number> Instant<'_, N> {
-    /// Roll [rad] and roll rate [rad/s] some time [s] ago.
-    pub fn ago(&self, delay_s: N) -> [N; 2] {
-        let time_s = -delay_s + self.time_s;
-        time_s.earlier(self.past.motion(time_s.value()))
-    }
 }
 
 /// A function of the instant and the parameters, strengths first, then shapes: one equation,
@@ -228,20 +198,6 @@ pub struct Law {
     /// For its slopes as well.
     pub sloped: fn(&Instant<'_, Sloped>, &[Sloped]) -> Sloped,
 }
-
-/// Share that the motion some time ago has in a moment now.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tap {
-    /// How long ago [s].
-    pub delay_s: f64,
-    /// Moment per unit inertia and roll [1/s2].
-    pub of_roll: f64,
-    /// Moment per unit inertia and roll rate [1/s].
-    pub of_rate: f64,
-}
-
-/// The shares that an echo is made of, the same all along a run.
-pub type Taps = fn(&Circumstances, &[f64]) -> Vec<Tap>;
 
 /// What a channel adds to all of a record's instants, in order of time.
 #[derive(Debug, Clone, Copy)]
@@ -280,8 +236,8 @@ pub const MOST_LAGS: usize = 2;
 pub enum Acts {
     /// Moment per unit inertia [rad/s2] on the right-hand side.
     Moment(Law),
-    /// The same of the roll and its rate at earlier times, with the weights of these.
-    Echo(Law, Taps),
+    /// The same of the roll and its rate at earlier times.
+    Echo(Taps),
     /// Share added to the inertia [-].
     Inertia(Law),
     /// Moment of states that follow the motion.

@@ -1,7 +1,8 @@
 //! A decay simulated: the model rolls freely from its initial state.
 
 use super::channel::{self, Tangent};
-use super::effect::{Acts, Circumstances, Instant, MOST_LAGS, Past};
+use super::echo::{Echo, StepEcho};
+use super::effect::{Acts, Circumstances, Instant, MOST_LAGS};
 use super::free_changes::Changes;
 use super::history::History;
 use super::term::{Base, Columns, Term};
@@ -67,12 +68,7 @@ impl Decay<'_> {
     }
 
     /// The motion at one instant; the acceleration is that of the base equation.
-    pub(super) fn instant<'b>(
-        &'b self,
-        time_s: f64,
-        [roll, rate]: [f64; 2],
-        history: &'b History,
-    ) -> Instant<'b> {
+    pub(super) fn instant(&self, time_s: f64, [roll, rate]: [f64; 2]) -> Instant<'_> {
         let Base { natural_rad_s: w, b1_per_s, b3_s, .. } = *self.base;
         Instant {
             time_s,
@@ -82,20 +78,29 @@ impl Decay<'_> {
             moment_n_m: 0.0,
             natural_rad_s: w,
             b1_per_s,
-            past: Past::Free(history),
             run: self.run,
         }
     }
 
-    fn slope<const N: usize>(&self, time_s: f64, state: &[f64; N], history: &History) -> [f64; N] {
-        let instant = self.instant(time_s, [state[0], state[1]], history);
-        let mut moment = instant.acceleration_rad_per_s2;
+    /// The echoes of its terms on the steps of a motion.
+    pub(super) fn echoes(&self, step_s: f64) -> Vec<StepEcho> {
+        let echo = |term: &Term| match term.effect.acts {
+            Acts::Echo(taps) => Some(Echo::new(&taps, self.run, &term.values).of_steps(step_s)),
+            _ => None,
+        };
+        self.terms.iter().filter_map(echo).collect()
+    }
+
+    /// Slopes of a state under what the echoes bring.
+    fn slope<const N: usize>(&self, time_s: f64, state: &[f64; N], echo: f64) -> [f64; N] {
+        let instant = self.instant(time_s, [state[0], state[1]]);
+        let mut moment = instant.acceleration_rad_per_s2 + echo;
         let mut inertia = 1.0;
         let mut slope = [0.0; N];
         let mut next = 2;
         for Term { effect, values } in self.terms {
             match effect.acts {
-                Acts::Moment(law) | Acts::Echo(law, _) => moment += (law.plain)(&instant, values),
+                Acts::Moment(law) => moment += (law.plain)(&instant, values),
                 Acts::Inertia(law) => inertia += (law.plain)(&instant, values),
                 Acts::Lagging(lag) if next + lag.n_states <= N => {
                     let own = &state[next..next + lag.n_states];
@@ -121,9 +126,13 @@ impl Decay<'_> {
         let mut points: Vec<[f64; N]> = Vec::new();
         let mut state = [0.0; N];
         state[..2].copy_from_slice(&self.start);
+        let echoes = self.echoes(step_s);
+        let heard = |history: &History, step: usize, is_half_after: bool| -> f64 {
+            echoes.iter().map(|echo| echo.at(history, step, is_half_after)).sum()
+        };
         for step in 0..=n_steps {
             let time_s = step as f64 * step_s;
-            let first = self.slope(time_s, &state, &history);
+            let first = self.slope(time_s, &state, heard(&history, step, false));
             history.push([state[0], state[1], first[1]]);
             if with_points {
                 points.push(state);
@@ -135,9 +144,10 @@ impl Decay<'_> {
                 std::array::from_fn(|i| state[i] + share * step_s * slope[i])
             };
             let middle_s = time_s + 0.5 * step_s;
-            let second = self.slope(middle_s, &along(&first, 0.5), &history);
-            let third = self.slope(middle_s, &along(&second, 0.5), &history);
-            let fourth = self.slope(time_s + step_s, &along(&third, 1.0), &history);
+            let (midway, next) = (heard(&history, step, true), heard(&history, step + 1, false));
+            let second = self.slope(middle_s, &along(&first, 0.5), midway);
+            let third = self.slope(middle_s, &along(&second, 0.5), midway);
+            let fourth = self.slope(time_s + step_s, &along(&third, 1.0), next);
             let mean: [f64; N] = std::array::from_fn(|i| {
                 (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]) / 6.0
             });
@@ -154,7 +164,7 @@ impl Decay<'_> {
     fn instants<'b>(&'b self, channel: usize, history: &'b History) -> Vec<Instant<'b>> {
         let at = |t: &f64| {
             let [roll, rate, acceleration] = history.motion(*t);
-            let instant = self.instant(*t, [roll, rate], history);
+            let instant = self.instant(*t, [roll, rate]);
             Instant { acceleration_rad_per_s2: acceleration, ..instant }
         };
         self.time_s[channel].iter().map(at).collect()

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::effect::{Acts, Instant, MOST_LAGS, Tap};
+use super::echo::{Echo, StepEcho};
+use super::effect::{Acts, Instant, MOST_LAGS};
 use super::free::{Decay, LEAST_INERTIA, N_START, Path};
 use super::history::History;
 use super::lagging::follow;
@@ -26,7 +27,7 @@ pub(super) struct Changes<const N: usize> {
     /// What these do to the slopes, point by point.
     forcing: Vec<[f64; N]>,
     /// What the motion some time ago does to the acceleration now.
-    taps: Vec<Tap>,
+    echoes: Vec<StepEcho>,
     /// What each candidate strength does to the acceleration; nothing where it does not move it.
     candidates: Vec<Option<Vec<f64>>>,
 }
@@ -42,24 +43,21 @@ impl<const N: usize> Changes<N> {
     pub(super) fn new(decay: &Decay<'_>, path: &Path<N>, candidates: &[Term]) -> Self {
         let (step_s, n_points) = (path.step_s, path.points.len());
         let n_forced = N_MOVING + decay.terms.iter().map(|term| term.values.len()).sum::<usize>();
-        let echoes = decay.terms.iter().filter_map(|term| match term.effect.acts {
-            Acts::Echo(_, taps) => Some(taps(decay.run, &term.values)),
-            _ => None,
-        });
-        let taps: Vec<Tap> = echoes.flatten().collect();
+        let heard = Heard::of(decay, step_s);
         let mut jacobians = Vec::with_capacity(n_points);
         let mut forcing = vec![[0.0; N]; n_points * n_forced];
         let mut quotients = Vec::with_capacity(n_points);
         let at = |k: usize| {
             let state = &path.points[k];
-            decay.instant(step_s * k as f64, [state[0], state[1]], &path.history)
+            decay.instant(step_s * k as f64, [state[0], state[1]])
         };
         for (k, state) in path.points.iter().enumerate() {
             let mut about = About {
                 jacobian: [[0.0; N]; N],
                 forcing: &mut forcing[k * n_forced..(k + 1) * n_forced],
             };
-            quotients.push(about.fill(decay, &at(k), state));
+            let now = |echo: &StepEcho| echo.at(&path.history, k, false);
+            quotients.push(about.fill(decay, &at(k), state, &heard.each(&now)));
             jacobians.push(about.jacobian);
         }
         let transitions = (0..n_points - 2)
@@ -72,9 +70,10 @@ impl<const N: usize> Changes<N> {
             if candidates.is_empty() { Vec::new() } else { (0..n_points).map(at).collect() };
         let candidates = candidates
             .iter()
-            .flat_map(|term| pushes(term, &instants, &quotients, step_s))
+            .flat_map(|term| pushes(term, (&instants, &path.history), &quotients, step_s))
             .collect();
-        Self { step_s, jacobians, transitions, n_forced, forcing, taps, candidates }
+        let echoes = decay.echoes(2.0 * step_s);
+        Self { step_s, jacobians, transitions, n_forced, forcing, echoes, candidates }
     }
 
     /// Number of columns: start, base, parameters of the terms, candidates.
@@ -124,12 +123,10 @@ impl<const N: usize> Changes<N> {
         change.clear();
         let at = |point: usize, change: &History| {
             let mut forcing = forcing(point);
-            for tap in &self.taps {
-                let time_s = self.step_s * point as f64 - tap.delay_s;
-                if time_s > 0.0 {
-                    let [roll, rate, _] = change.motion(time_s);
-                    forcing[1] += tap.of_roll * roll + tap.of_rate * rate;
-                }
+            // Two points of the motion are one step of its change.
+            let (step, is_half_after) = (point / 2, point % 2 == 1);
+            for echo in &self.echoes {
+                forcing[1] += echo.at(change, step, is_half_after);
             }
             forcing
         };
@@ -147,6 +144,34 @@ impl<const N: usize> Changes<N> {
     }
 }
 
+/// The echoes of a decay's terms, and what each of their parameters does to them.
+struct Heard(Vec<(StepEcho, Vec<StepEcho>)>);
+
+impl Heard {
+    fn of(decay: &Decay<'_>, step_s: f64) -> Self {
+        let heard = decay.terms.iter().filter_map(|Term { effect, values }| match effect.acts {
+            Acts::Echo(taps) => {
+                let slopes = Echo::slopes(&taps, decay.run, values);
+                let slopes = slopes.iter().map(|slope| slope.of_steps(step_s)).collect();
+                Some((Echo::new(&taps, decay.run, values).of_steps(step_s), slopes))
+            }
+            _ => None,
+        });
+        Self(heard.collect())
+    }
+
+    /// Each echo at one point with its slopes.
+    fn each(&self, now: &dyn Fn(&StepEcho) -> f64) -> Vec<Sloped> {
+        let at = |(echo, slopes): &(StepEcho, Vec<StepEcho>)| {
+            let mut sloped = Sloped::from(now(echo));
+            let places = sloped.slopes[slope::PARAMETER..].iter_mut();
+            places.zip(slopes).for_each(|(place, slope)| *place = now(slope));
+            sloped
+        };
+        self.0.iter().map(at).collect()
+    }
+}
+
 /// The equation about one point.
 struct About<'p, const N: usize> {
     jacobian: Matrix<N>,
@@ -160,7 +185,13 @@ struct OfBase {
 }
 
 impl<const N: usize> About<'_, N> {
-    fn fill(&mut self, decay: &Decay<'_>, instant: &Instant<'_>, state: &[f64; N]) -> Quotient {
+    fn fill(
+        &mut self,
+        decay: &Decay<'_>,
+        instant: &Instant<'_>,
+        state: &[f64; N],
+        heard: &[Sloped],
+    ) -> Quotient {
         let (roll, rate) = (instant.roll_rad, instant.rate_rad_per_s);
         let (w, b1, b3) = (decay.base.natural_rad_s, decay.base.b1_per_s, decay.base.b3_s);
         let of_base = OfBase {
@@ -172,15 +203,21 @@ impl<const N: usize> About<'_, N> {
         (0..N_MOVING).for_each(|k| self.forcing[k][1] = of_base.numbers[k]);
         let sloped = slopes::inputs(instant);
         let (mut moment, mut inertia) = (instant.acceleration_rad_per_s2, 1.0);
-        let (mut first, mut lag_state) = (N_MOVING, N_START);
+        let (mut first, mut lag_state, mut heard) = (N_MOVING, N_START, heard.iter());
         for Term { effect, values } in decay.terms {
             let columns = first..first + values.len();
             first = columns.end;
             match effect.acts {
-                Acts::Moment(law) | Acts::Echo(law, _) => {
+                Acts::Moment(law) => {
                     let of = slopes::of_law(&law, &sloped, values);
                     moment += of.value;
                     self.enter(1, &of, 1.0, &of_base, columns);
+                }
+                Acts::Echo(_) => {
+                    if let Some(of) = heard.next() {
+                        moment += of.value;
+                        self.enter(1, of, 1.0, &of_base, columns.clone());
+                    }
                 }
                 Acts::Inertia(law) => inertia += (law.plain)(instant, values),
                 Acts::Lagging(lag) if lag_state + lag.n_states <= N => {
@@ -249,7 +286,7 @@ impl<const N: usize> About<'_, N> {
 /// What each strength of a candidate does to the acceleration at every point, where it moves it.
 fn pushes(
     term: &Term,
-    instants: &[Instant<'_>],
+    (instants, history): (&[Instant<'_>], &History),
     quotients: &[Quotient],
     step_s: f64,
 ) -> Vec<Option<Vec<f64>>> {
@@ -264,8 +301,15 @@ fn pushes(
             let all = instants.iter().zip(quotients);
             match term.effect.acts {
                 _ if !shows => None,
-                Acts::Moment(law) | Acts::Echo(law, _) => {
+                Acts::Moment(law) => {
                     Some(all.map(|(i, p)| (law.plain)(i, &values) / (by * p.inertia)).collect())
+                }
+                Acts::Echo(taps) => {
+                    let echo = Echo::new(&taps, instants[0].run, &values).of_steps(step_s);
+                    let points = quotients.iter().enumerate();
+                    let push =
+                        |(k, p): (usize, &Quotient)| echo.at(history, k, false) / (by * p.inertia);
+                    Some(points.map(push).collect())
                 }
                 Acts::Inertia(law) => {
                     let push = |i, p: &Quotient| -p.acceleration * (law.plain)(i, &values);

@@ -33,39 +33,24 @@ impl History {
         self.states.push(motion);
     }
 
-    /// Roll [rad], rate [rad/s] and acceleration [rad/s2] at a time [s]; nil before the start.
-    pub fn at(&self, time_s: f64) -> [f64; 3] {
-        if time_s <= 0.0 || self.states.len() < 2 {
-            return [0.0; 3];
-        }
-        self.motion(time_s)
-    }
-
     /// Roll, rate and acceleration at a time [s] by the quintic between two steps.
     pub(super) fn motion(&self, time_s: f64) -> [f64; 3] {
-        let h = self.step_s;
-        let place = (time_s / h).clamp(0.0, (self.states.len() - 1) as f64);
+        let place = (time_s / self.step_s).clamp(0.0, (self.states.len() - 1) as f64);
         let before = (place as usize).min(self.states.len() - 2);
-        let x = place - before as f64;
+        let weights = quintic(place - before as f64, self.step_s);
+        weights.map(|weights| self.weighed(before, &weights))
+    }
+
+    /// Sum of two neighbouring states under the weights of a quintic between them.
+    pub(super) fn weighed(&self, before: usize, weights: &[f64; 6]) -> f64 {
         let ([p0, v0, a0], [p1, v1, a1]) = (self.states[before], self.states[before + 1]);
-        let (c1, c2) = (h * v0, 0.5 * h * h * a0);
-        let (d, e, f) = (p1 - p0 - c1 - c2, h * v1 - c1 - 2.0 * c2, h * h * a1 - 2.0 * c2);
-        let c3 = 10.0 * d - 4.0 * e + 0.5 * f;
-        let c4 = -15.0 * d + 7.0 * e - f;
-        let c5 = 6.0 * d - 3.0 * e + 0.5 * f;
-        let roll = p0 + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5))));
-        let rate = (c1 + x * (2.0 * c2 + x * (3.0 * c3 + x * (4.0 * c4 + x * 5.0 * c5)))) / h;
-        let acceleration = (2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * 20.0 * c5))) / (h * h);
-        [roll, rate, acceleration]
+        let [w0, w1, w2, w3, w4, w5] = weights;
+        (w0 * p0 + w1 * v0) + (w2 * a0 + w3 * p1) + (w4 * v1 + w5 * a1)
     }
 
     /// Roll alone at the times of a [`Sampling`].
     pub(super) fn rolls<'a>(&'a self, sampling: &'a Sampling) -> impl Iterator<Item = f64> + 'a {
-        sampling.places.iter().map(|(before, weights)| {
-            let ([p0, v0, a0], [p1, v1, a1]) = (self.states[*before], self.states[*before + 1]);
-            let [w0, w1, w2, w3, w4, w5] = weights;
-            (w0 * p0 + w1 * v0) + (w2 * a0 + w3 * p1) + (w4 * v1 + w5 * a1)
-        })
+        sampling.places.iter().map(|(before, weights)| self.weighed(*before, weights))
     }
 }
 
@@ -82,21 +67,40 @@ impl Sampling {
         let place = |t: &f64| {
             let place = (t / h).clamp(0.0, n_steps as f64);
             let before = (place as usize).min(n_steps - 1);
-            let (x, y) = (place - before as f64, 1.0 - (place - before as f64));
-            // Each weight is a cubic times what keeps the other end still.
-            let (from_end, from_start) = (y * y * y, x * x * x);
-            let weights = [
-                from_end * (1.0 + x * (3.0 + 6.0 * x)),
-                from_end * x * (1.0 + 3.0 * x) * h,
-                from_end * x * x * 0.5 * h * h,
-                from_start * (1.0 + y * (3.0 + 6.0 * y)),
-                -from_start * y * (1.0 + 3.0 * y) * h,
-                from_start * y * y * 0.5 * h * h,
-            ];
-            (before, weights)
+            let [of_roll, ..] = quintic(place - before as f64, h);
+            (before, of_roll)
         };
         Self { places: time_s.iter().map(place).collect() }
     }
+}
+
+/// The quintic through roll, rate and acceleration at both ends of a step: what each of the six
+/// weighs in roll, rate and acceleration at a share `x` of the step.
+pub(super) fn quintic(x: f64, step_s: f64) -> [[f64; 6]; 3] {
+    const POWERS: [[f64; 6]; 6] = [
+        [1.0, 0.0, 0.0, -10.0, 15.0, -6.0],
+        [0.0, 1.0, 0.0, -6.0, 8.0, -3.0],
+        [0.0, 0.0, 0.5, -1.5, 1.5, -0.5],
+        [0.0, 0.0, 0.0, 10.0, -15.0, 6.0],
+        [0.0, 0.0, 0.0, -4.0, 7.0, -3.0],
+        [0.0, 0.0, 0.0, 0.5, -1.0, 0.5],
+    ];
+    let h = step_s;
+    let units = [1.0, h, h * h, 1.0, h, h * h];
+    let mut weights = [[0.0; 6]; 3];
+    for (i, c) in POWERS.iter().enumerate() {
+        // Horner's scheme for the polynomial and its first two derivatives.
+        let (mut value, mut first, mut half_second) = (c[5], 0.0, 0.0);
+        for k in (0..5).rev() {
+            half_second = half_second * x + first;
+            first = first * x + value;
+            value = value * x + c[k];
+        }
+        weights[0][i] = units[i] * value;
+        weights[1][i] = units[i] * first / h;
+        weights[2][i] = units[i] * 2.0 * half_second / (h * h);
+    }
+    weights
 }
 
 #[cfg(test)]

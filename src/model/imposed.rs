@@ -2,7 +2,8 @@
 
 use super::channel;
 use super::course::Course;
-use super::effect::{Acts, Circumstances, Instant, MOST_LAGS, Past};
+use super::echo::{CourseEcho, Echo};
+use super::effect::{Acts, Circumstances, Instant, MOST_LAGS};
 use super::lagging::follow;
 use super::linear::between;
 use super::term::{Base, Term};
@@ -45,10 +46,13 @@ impl Points {
     }
 }
 
-/// States of every term that remembers, at every point.
+/// What the terms keep of the course.
 pub(super) struct Remembered {
     pub(super) points: Points,
+    /// States of every term that remembers, at every point.
     pub(super) states: Vec<Vec<[f64; MOST_LAGS]>>,
+    /// The echo of every term that is one.
+    pub(super) echoes: Vec<CourseEcho>,
 }
 
 impl<'a> Imposed<'a> {
@@ -83,7 +87,6 @@ impl<'a> Imposed<'a> {
             moment_n_m: 0.0,
             natural_rad_s: self.base.natural_rad_s,
             b1_per_s: self.base.b1_per_s,
-            past: Past::Imposed(self.course),
             run: self.run,
         }
     }
@@ -103,12 +106,19 @@ impl<'a> Imposed<'a> {
         Points { from_s, step_s, n: ((last_s - from_s) / step_s).ceil() as usize + 1 }
     }
 
-    /// States of every term that remembers.
+    /// What the terms keep of the course.
     pub(super) fn remembered(&self) -> Remembered {
         let points = self.points();
+        let echo = |term: &Term| match term.effect.acts {
+            Acts::Echo(taps) => {
+                Some(Echo::new(&taps, self.run, &term.values).of_course(self.course))
+            }
+            _ => None,
+        };
+        let echoes = self.terms.iter().filter_map(echo).collect();
         let lags = |term: &Term| matches!(term.effect.acts, Acts::Lagging(_));
         if !self.terms.iter().any(lags) {
-            return Remembered { points, states: Vec::new() };
+            return Remembered { points, states: Vec::new(), echoes };
         }
         let instants: Vec<Instant<'_>> =
             points.times_s().map(|t| self.instant(t, self.course.at(t))).collect();
@@ -117,7 +127,7 @@ impl<'a> Imposed<'a> {
             _ => None,
         });
         let states = each.collect();
-        Remembered { points, states }
+        Remembered { points, states, echoes }
     }
 
     /// The motion with its moment at the times of a channel.
@@ -144,10 +154,11 @@ impl<'a> Imposed<'a> {
         let rate = instant.rate_rad_per_s;
         let mut inertia = 1.0;
         let mut sum = b1_per_s * rate + b3_s * rate.powi(3) + w * w * instant.roll_rad;
+        sum -= remembered.echoes.iter().map(|e| e.at(self.course, instant.time_s)).sum::<f64>();
         let mut lagging = remembered.states.iter();
         for Term { effect, values } in self.terms {
             match effect.acts {
-                Acts::Moment(law) | Acts::Echo(law, _) => sum -= (law.plain)(instant, values),
+                Acts::Moment(law) => sum -= (law.plain)(instant, values),
                 Acts::Inertia(law) => inertia += (law.plain)(instant, values),
                 Acts::Lagging(lag) => {
                     let states = lagging.next().map_or([0.0; MOST_LAGS], |states| {
@@ -155,7 +166,7 @@ impl<'a> Imposed<'a> {
                     });
                     sum -= (lag.moment.plain)(instant, values, &states);
                 }
-                Acts::Roll(_) | Acts::Drive(_) | Acts::Record(_) => {}
+                Acts::Echo(_) | Acts::Roll(_) | Acts::Drive(_) | Acts::Record(_) => {}
             }
         }
         sum + inertia * instant.acceleration_rad_per_s2

@@ -2,6 +2,7 @@
 
 use super::channel::{self, Tangent};
 use super::course::N_COURSE;
+use super::echo::{CourseEcho, Echo};
 use super::effect::{Acts, Instant, MOST_LAGS};
 use super::imposed::{Imposed, Remembered};
 use super::lagging::{follow, jacobian};
@@ -29,6 +30,10 @@ struct Changes<'a> {
     lagged: Vec<Lagged>,
     /// States of every candidate that remembers.
     followed: Vec<Vec<[f64; MOST_LAGS]>>,
+    /// What the parameters of every term that is an echo do to it.
+    heard: Vec<Vec<CourseEcho>>,
+    /// What each strength of every candidate does where it is an echo.
+    echoes: Vec<Vec<CourseEcho>>,
     /// Candidates with each strength moved a little in turn, and by how much.
     nudged: Vec<Vec<(Vec<f64>, f64)>>,
     n_columns: usize,
@@ -100,9 +105,35 @@ impl<'a> Changes<'a> {
             remembered,
             lagged: Vec::new(),
             followed: Vec::new(),
+            heard: Vec::new(),
+            echoes: Vec::new(),
             nudged: candidates.iter().map(Term::nudged_each).collect(),
             n_columns,
         };
+        let along = |echoes: Vec<Echo>| -> Vec<CourseEcho> {
+            echoes.iter().map(|echo| echo.of_course(imposed.course)).collect()
+        };
+        all.heard = imposed
+            .terms
+            .iter()
+            .filter_map(|term| match term.effect.acts {
+                Acts::Echo(taps) => Some(along(Echo::slopes(&taps, imposed.run, &term.values))),
+                _ => None,
+            })
+            .collect();
+        all.echoes = candidates
+            .iter()
+            .zip(&all.nudged)
+            .map(|(term, nudged)| match term.effect.acts {
+                Acts::Echo(taps) => along(
+                    nudged
+                        .iter()
+                        .map(|(values, _)| Echo::new(&taps, imposed.run, values))
+                        .collect(),
+                ),
+                _ => Vec::new(),
+            })
+            .collect();
         if !imposed.terms.iter().any(|term| lags(&term)) && !candidates.iter().any(|c| shown(&c)) {
             return all;
         }
@@ -174,12 +205,21 @@ impl<'a> Changes<'a> {
             let sloped = slopes::inputs(instant);
             let mut whole = [w * w, b1 + 3.0 * b3 * rate * rate, 1.0];
             let (mut first, mut lag_place) = (N_COURSE + N_BASE, 0);
+            let mut heard = self.remembered.echoes.iter().zip(&self.heard);
             for Term { effect, values } in imposed.terms {
                 let own = first..first + values.len();
                 first = own.end;
                 let (of, by) = match effect.acts {
-                    Acts::Moment(law) | Acts::Echo(law, _) => {
-                        (slopes::of_law(&law, &sloped, values), -1.0)
+                    Acts::Moment(law) => (slopes::of_law(&law, &sloped, values), -1.0),
+                    Acts::Echo(_) => {
+                        if let Some((echo, slopes)) = heard.next() {
+                            let changes = echo.changes(imposed.course, instant.time_s);
+                            sums.iter_mut().zip(changes).for_each(|(sum, of)| *sum -= of);
+                            for (column, slope) in own.clone().zip(slopes) {
+                                sums[column] -= slope.at(imposed.course, instant.time_s);
+                            }
+                        }
+                        continue;
                     }
                     Acts::Inertia(law) => {
                         let of = slopes::of_law(&law, &sloped, values);
@@ -209,14 +249,6 @@ impl<'a> Changes<'a> {
                 for (k, column) in own.enumerate() {
                     sums[column] += by * of.slopes[slope::PARAMETER + k];
                 }
-                if let Acts::Echo(_, taps) = effect.acts {
-                    for tap in taps(imposed.run, values) {
-                        let earlier = imposed.course.changes(instant.time_s - tap.delay_s);
-                        for (sum, change) in sums.iter_mut().zip(&earlier) {
-                            *sum += by * (tap.of_roll * change[0] + tap.of_rate * change[1]);
-                        }
-                    }
-                }
             }
             for (sum, change) in sums.iter_mut().zip(course) {
                 *sum += whole[0] * change[0] + whole[1] * change[1] + whole[2] * change[2];
@@ -236,7 +268,8 @@ impl<'a> Changes<'a> {
     fn push(&self, instant: &Instant<'_>, sums: &mut [f64]) {
         let mut next = 0;
         let mut followed = self.followed.iter();
-        for (candidate, nudged) in self.candidates.iter().zip(&self.nudged) {
+        let each = self.candidates.iter().zip(&self.nudged).zip(&self.echoes);
+        for ((candidate, nudged), echoes) in each {
             let shows = (candidate.effect.shows)(instant.run);
             let states = match candidate.effect.acts {
                 Acts::Lagging(_) if shows => followed.next().map_or([0.0; MOST_LAGS], |states| {
@@ -244,12 +277,11 @@ impl<'a> Changes<'a> {
                 }),
                 _ => [0.0; MOST_LAGS],
             };
-            for (values, by) in nudged {
+            for (k, (values, by)) in nudged.iter().enumerate() {
                 if shows {
                     sums[next] += match candidate.effect.acts {
-                        Acts::Moment(law) | Acts::Echo(law, _) => {
-                            -(law.plain)(instant, values) / by
-                        }
+                        Acts::Moment(law) => -(law.plain)(instant, values) / by,
+                        Acts::Echo(_) => -echoes[k].at(self.imposed.course, instant.time_s) / by,
                         Acts::Inertia(law) => {
                             instant.acceleration_rad_per_s2 * (law.plain)(instant, values) / by
                         }

@@ -5,6 +5,7 @@
 //! line of the table there; nothing else knows its name.
 
 pub mod course;
+pub mod echo;
 pub mod effect;
 pub mod effects;
 pub mod free;

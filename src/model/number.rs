@@ -46,9 +46,6 @@ pub trait Number:
     #[must_use]
     fn chain(self, value: f64, derivative: f64) -> Self;
 
-    /// Roll and rate at an earlier time, given those and the acceleration there.
-    fn earlier(self, motion: [f64; 3]) -> [Self; 2];
-
     /// Whole power.
     #[must_use]
     fn powi(self, power: i32) -> Self {
@@ -113,10 +110,6 @@ impl Number for f64 {
         value
     }
 
-    fn earlier(self, [roll, rate, _]: [f64; 3]) -> [Self; 2] {
-        [roll, rate]
-    }
-
     fn powf(self, power: Self) -> Self {
         f64::powf(self, power)
     }
@@ -159,10 +152,6 @@ impl Number for Sloped {
 
     fn chain(self, value: f64, derivative: f64) -> Self {
         Self { value, slopes: self.slopes.map(|s| derivative * s) }
-    }
-
-    fn earlier(self, [roll, rate, acceleration]: [f64; 3]) -> [Self; 2] {
-        [self.chain(roll, rate), self.chain(rate, acceleration)]
     }
 }
 

@@ -16,7 +16,6 @@ pub(super) fn inputs<'a>(instant: &Instant<'a>) -> Instant<'a, Sloped> {
         moment_n_m: instant.moment_n_m.into(),
         natural_rad_s: Sloped::input(instant.natural_rad_s, slope::BASE),
         b1_per_s: Sloped::input(instant.b1_per_s, slope::BASE + 1),
-        past: instant.past,
         run: instant.run,
     }
 }

@@ -1,11 +1,9 @@
 //! Waves that the model made come back from the tank walls, the long ones first.
 
-use crate::model::effect::{
-    Acts, Circumstances, Effect, Instant, Law, Layer, Parameter, Scope, Tap, each,
-};
+use crate::model::echo::{Tap, Taps, times};
+use crate::model::effect::{Acts, Circumstances, Effect, Layer, Parameter, Scope, each};
 use crate::model::number::Number;
 use crate::roll::wall_waves;
-use crate::run::RunKind;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -20,7 +18,7 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: delays,
     scope: Scope::Campaign,
     shows: in_reach,
-    acts: Acts::Echo(Law { plain: law, sloped: law }, taps),
+    acts: Acts::Echo(Taps { plain: taps, sloped: taps }),
     always_equivalent: &[],
     reference: "ITTC 7.5-02-07-02.1: tank interference; deep-water dispersion",
 };
@@ -51,17 +49,18 @@ const SPACING: f64 = 0.24;
 
 /// The echo of the roll rate as a complex number: the integral over the delay `s` of
 /// `sqrt(g/(4 pi D)) exp(i (g s^2/(4 D) - pi/4))` times the rate at `t - s`, with `td = 2 w D/g`;
-/// `w phi` is the rate's other component. Tells delay [s], weight of the roll, weight of the rate.
-fn echo<N: Number>(run: &Circumstances, p: &[N], tell: &mut dyn FnMut(N, N, N)) {
-    let (delay_s, w) = (p[2], run.natural_rad_s);
-    let step_s = (delay_s * (2.0 / w)).powf(N::from(0.5)) * SPACING;
-    let first_s = delay_s - step_s * f64::from(N_SIDE);
+/// `w phi` is the rate's other component.
+fn taps<N: Number>(run: &Circumstances, p: &[N]) -> Vec<Tap<N>> {
+    let (trip_s, w) = (p[2], run.natural_rad_s);
+    let step_s = (trip_s * (2.0 / w)).powf(N::from(0.5)) * SPACING;
+    let first_s = trip_s - step_s * f64::from(N_SIDE);
     // The phase of the chirp is w s^2/(2 td), so it turns by a growing angle from tap to tap.
     let bend = 2.0 * SPACING * SPACING;
-    let mut phase = rotation(first_s * first_s / delay_s * (0.5 * w));
-    let mut turn = rotation(first_s * step_s / delay_s * w + 0.5 * bend);
+    let mut phase = rotation(first_s * first_s / trip_s * (0.5 * w));
+    let mut turn = rotation(first_s * step_s / trip_s * w + 0.5 * bend);
     let more = rotation(N::from(bend));
     let size = SPACING / std::f64::consts::PI.sqrt() * (1.0 - outrun(run)).max(0.0);
+    let mut taps = Vec::new();
     for tap in -N_SIDE..=N_SIDE {
         let at = f64::from(tap) / f64::from(N_SIDE + 1);
         // A taper: frequencies far from those of the roll are not in the record.
@@ -71,44 +70,15 @@ fn echo<N: Number>(run: &Circumstances, p: &[N], tell: &mut dyn FnMut(N, N, N)) 
         let delay_s = first_s + step_s * f64::from(tap + N_SIDE);
         // No wave is back within half a period.
         if delay_s.value() > std::f64::consts::PI / w {
-            tell(delay_s, of_roll, of_rate);
+            taps.push(Tap { delay_s, of_roll, of_rate });
         }
         phase = times(phase, turn);
         turn = times(turn, more);
     }
-}
-
-fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
-    let mut moment = N::from(0.0);
-    // Before its first waves are back the echo is nil.
-    if i.time_s > taps_from_s(p[2].value(), i.run.natural_rad_s) || is_forced(i.run) {
-        echo(i.run, p, &mut |delay_s, of_roll, of_rate| {
-            let [roll_rad, rate_rad_per_s] = i.ago(delay_s);
-            moment = moment + of_roll * roll_rad + of_rate * rate_rad_per_s;
-        });
-    }
-    moment
-}
-
-fn taps_from_s(delay_s: f64, natural_rad_s: f64) -> f64 {
-    delay_s - (2.0 * delay_s / natural_rad_s).sqrt() * SPACING * f64::from(N_SIDE)
-}
-
-fn is_forced(run: &Circumstances) -> bool {
-    run.kind == RunKind::Forced
-}
-
-fn taps(run: &Circumstances, p: &[f64]) -> Vec<Tap> {
-    let mut taps = Vec::new();
-    echo(run, p, &mut |delay_s, of_roll, of_rate| taps.push(Tap { delay_s, of_roll, of_rate }));
     taps
 }
 
 fn rotation<N: Number>(angle: N) -> [N; 2] {
     let (sin, cos) = angle.sin_cos();
     [cos, sin]
-}
-
-fn times<N: Number>(a: [N; 2], b: [N; 2]) -> [N; 2] {
-    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
 }

@@ -1,0 +1,106 @@
+//! Whether the best of the effects that were tried may enter the model.
+
+use super::alike::{SAME, contains, is_approximate, is_same};
+use super::growth::{ENTERS, Entered, excess, leftovers, sure_excess};
+use super::leftover::Leftover;
+use super::settle::Settled;
+use super::survey::Survey;
+use super::trial::Tried;
+use crate::model::Scope;
+
+/// Share of what is left for sure that an effect must take away to enter.
+const ENOUGH: f64 = 0.2;
+/// Share of what an approximate effect removes that it may leave of itself: no other effect.
+const CRUMB: f64 = 0.03;
+/// The same for an effect that each run has of its own, which takes up much of anything.
+const CRUMB_OF_EACH_RUN: f64 = 0.25;
+/// What an effect takes of what is left, over the logarithm of its Bayes factor, where that is
+/// what speaks for it; it would be two if nothing else did.
+const OF_LEFTOVER: f64 = 0.5;
+/// Share of the evidence of an approximate effect below which another is a want of its form.
+const CRUMB_OF_EVIDENCE: f64 = 0.01;
+
+/// What becomes of the best effect.
+pub(super) enum Best {
+    /// There is none.
+    None,
+    /// It may enter.
+    Enters(Settled, Entered),
+    /// It takes up what an approximate effect of the model leaves of itself.
+    IsCrumb(Settled, Entered),
+    /// It is sure, and nearly all of what is left stays.
+    ExplainsTooLittle,
+}
+
+/// Judges the first of the tried effects, best first, with those that cannot be told from it.
+pub(super) fn best(
+    survey: &Survey,
+    current: &Settled,
+    mut tried: Vec<Tried>,
+    known: &[Entered],
+) -> Best {
+    prefer_the_part(&mut tried);
+    let Some(best) = tried.first() else { return Best::None };
+    let log_bayes_factor = best.settled.log_evidence - current.log_evidence;
+    if log_bayes_factor < ENTERS {
+        return Best::None;
+    }
+    let (before, after) = (leftovers(survey, &current.fit), leftovers(survey, &best.settled.fit));
+    if !explains_enough(&before, &after, log_bayes_factor) {
+        return Best::ExplainsTooLittle;
+    }
+    let removed = excess(&before) - excess(&after);
+    let equivalent_to = tried[1..]
+        .iter()
+        .filter(|one| !contains(one.id, best.id))
+        .filter(|one| is_same(survey, current, &best.settled, &one.settled, sure_excess(&after)))
+        .map(|one| one.id)
+        .collect();
+    let entered = Entered { id: best.id, log_bayes_factor, removed, equivalent_to };
+    let settled = tried.swap_remove(0).settled;
+    if known.iter().any(|known| is_crumb_of(known, &entered, &settled)) {
+        Best::IsCrumb(settled, entered)
+    } else {
+        Best::Enters(settled, entered)
+    }
+}
+
+/// Of two that do as well, the one that is a part of the other comes first.
+fn prefer_the_part(tried: &mut [Tried]) {
+    let Some(first) = tried.first() else { return };
+    let least = first.settled.log_evidence - 0.25 * SAME;
+    let part = tried[1..]
+        .iter()
+        .position(|one| one.settled.log_evidence > least && contains(first.id, one.id));
+    if let Some(k) = part {
+        tried[..=k + 1].rotate_right(1);
+    }
+}
+
+/// Whether an effect is what the form of a known one leaves. What makes the runs agree better
+/// takes nothing from what each of them leaves, and is no crumb of that.
+fn is_crumb_of(known: &Entered, newest: &Entered, settled: &Settled) -> bool {
+    let is_of_each_run =
+        settled.fit.extensions.last().is_some_and(|extension| extension.effect.scope == Scope::Run);
+    let share = if is_of_each_run { CRUMB_OF_EACH_RUN } else { CRUMB };
+    let is_of_leftover = newest.removed > OF_LEFTOVER * newest.log_bayes_factor;
+    is_approximate(known.id)
+        && ((is_of_leftover && newest.removed < share * known.removed)
+            || newest.log_bayes_factor < CRUMB_OF_EVIDENCE * known.log_bayes_factor)
+}
+
+/// Whether an effect takes its part of what is left for sure, or gains as much in making the runs
+/// agree: what removes a little of a large remainder is not its cause, whatever its odds.
+fn explains_enough(before: &[Leftover], after: &[Leftover], log_bayes_factor: f64) -> bool {
+    if !before.iter().any(Leftover::is_structure) {
+        return true;
+    }
+    // A ringing above the frequencies of roll is taken for noise until its cause is known.
+    let sure = before.iter().zip(after).filter(|(before, _)| before.is_structure());
+    let (n_sure, n_mended) = sure.fold((0, 0), |(all, mended), (before, after)| {
+        let is_mended = after.rms.powi(2) < (1.0 - ENOUGH) * before.rms.powi(2);
+        (all + 1, mended + usize::from(is_mended))
+    });
+    let gained = (excess(before) - excess(after)).max(2.0 * log_bayes_factor);
+    gained > ENOUGH * excess(before) || 2 * n_mended >= n_sure
+}
