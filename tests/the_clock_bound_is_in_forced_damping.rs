@@ -123,8 +123,9 @@ fn received(config: &DeviceConfig, timer_s: f64, random: &mut ChaCha8Rng) -> Vec
     records
 }
 
-/// The forced run of a campaign of these boards, each behind an adapter of its own.
-fn run(boards: &[(String, f64)], seed: u64) -> (IdentifiedRun, f64) {
+/// The forced run of a campaign of these boards, each behind an adapter of its own, and what the
+/// budget says of the time between them.
+fn run(boards: &[(String, f64)], seed: u64) -> (IdentifiedRun, Option<f64>) {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let devices: String = boards.iter().map(|(text, _)| text.as_str()).collect();
     let text = format!("{CAMPAIGN}{devices}");
@@ -136,8 +137,7 @@ fn run(boards: &[(String, f64)], seed: u64) -> (IdentifiedRun, f64) {
     let results = results.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(results.runs.len(), 1, "{:?}", results.rejected);
     let budgets = uncertainty::budgets(&campaign, &results);
-    let skew_per_s = budgets[0].skew_per_s.expect("the bounds are stated");
-    (results.runs[0].clone(), skew_per_s)
+    (results.runs[0].clone(), budgets[0].skew_per_s)
 }
 
 fn write(folder: &Path, text: &str, boards: &[(String, f64)], seed: u64) {
@@ -171,7 +171,8 @@ fn write(folder: &Path, text: &str, boards: &[(String, f64)], seed: u64) {
 
 fn apart(timer_s: f64, seed: u64) -> (IdentifiedRun, f64) {
     let boards = [(board("roller", &["roll"]), timer_s), (board("cell", &["force"]), timer_s)];
-    run(&boards, seed)
+    let (run, skew_per_s) = run(&boards, seed);
+    (run, skew_per_s.expect("the bounds are stated"))
 }
 
 /// Whether the truth is within 1.96 of what two uncertainties together make.
@@ -199,7 +200,8 @@ fn a_coarser_timer_makes_the_band_of_the_same_run_wider_and_the_band_holds() {
         let weight = cubic_weight(FREQUENCY_RAD_S, 5.0_f64.to_radians());
         for (run, told) in [(&fine, fine_skew), (&coarse, coarse_skew)] {
             let skew = run.identification.skew.expect("the bounds are stated");
-            let bounds: Vec<f64> = run.brought.iter().map(|channel| channel.bound_s).collect();
+            let bounds: Vec<f64> =
+                run.brought.iter().map(|channel| channel.bound_s.expect("stated")).collect();
             let by_hand = (bounds.iter().map(|b| b * b).sum::<f64>() / 3.0).sqrt();
             assert!((skew.sd_s - by_hand).abs() < 1e-12, "{bounds:?}");
             // (K/(I+dI) - w^2) u(t), and the budget says the same.
@@ -240,7 +242,19 @@ fn a_coarser_timer_makes_the_band_of_the_same_run_wider_and_the_band_holds() {
 fn channels_of_one_board_err_together() {
     let (run, skew_per_s) = run(&[(board("both", &["roll", "force"]), 16e-3)], 3);
     let skew = run.identification.skew.expect("the bound is stated");
-    assert!(run.run.timing.is_common && skew.sd_s == 0.0 && skew_per_s == 0.0, "{skew:?}");
-    assert!(run.brought.iter().all(|channel| channel.bound_s > 0.0));
+    assert!(run.run.timing.is_common && skew.sd_s == 0.0 && skew_per_s == Some(0.0), "{skew:?}");
+    assert!(run.brought.iter().all(|channel| channel.bound_s > Some(0.0)));
     assert!((damping_per_s(&run) - B1_PER_S).abs() < 0.01, "{}", damping_per_s(&run));
+}
+
+#[test]
+fn a_cell_behind_a_filter_that_nobody_declared_states_no_bound() {
+    let undeclared =
+        board("cell", &["force"]).replace("settings", "lag = { kind = \"unknown\" }\nsettings");
+    let (run, skew_per_s) = run(&[(board("roller", &["roll"]), 1e-3), (undeclared, 1e-3)], 3);
+    let told: Vec<bool> = run.brought.iter().map(|channel| channel.bound_s.is_some()).collect();
+    assert_eq!(told, [true, false], "{:?}", run.brought);
+    assert!(run.identification.skew.is_none() && skew_per_s.is_none());
+    let remarks = &run.identification.remarks;
+    assert!(remarks.iter().any(|remark| remark.contains("no bound of the time")), "{remarks:?}");
 }

@@ -105,7 +105,7 @@ fn a_run_page_tells_what_each_instrument_lost_and_says_so_when_that_is_nothing()
     let mut results = synthetic_results::results();
     let roll = Counts { received: 1993, lost: 5, repeated: 2, over_range: 1, damaged: 4 };
     let speed = Counts { received: 200, ..Counts::default() };
-    let of = |quantity, counts| Brought { quantity, counts, bound_s: 2.5e-4 };
+    let of = |quantity, counts| Brought { quantity, counts, bound_s: Some(2.5e-4) };
     results.runs[0].brought = vec![of(Quantity::Roll, roll), of(Quantity::Speed, speed)];
     results.runs[1].brought = vec![of(Quantity::Speed, speed)];
     results.runs[2].brought = Vec::new();

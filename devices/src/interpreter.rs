@@ -87,6 +87,7 @@ pub struct Interpreter {
     port: PathBuf,
     channels: Vec<ChannelState>,
     quality: Quality,
+    lag_is_declared: bool,
     stamper: Stamper,
     troubles: Troubles,
     gap_from_s: Option<f64>,
@@ -129,6 +130,7 @@ impl Interpreter {
             port: config.port.clone(),
             channels: config.channels.iter().map(state).collect(),
             quality: Quality::GOOD.with_if(config.lag.is_flagged(), Quality::LAGGED),
+            lag_is_declared: config.lag.is_declared(),
             stamper: Stamper::new(settings),
             troubles: Troubles::new(config, protocol.fields().len()),
             gap_from_s: None,
@@ -147,7 +149,7 @@ impl Interpreter {
         begun.map(|state| Counted {
             quantity: state.channel.quantity,
             time_s: state.last_time_s,
-            bound_s: state.last_bound_s,
+            bound_s: self.lag_is_declared.then_some(state.last_bound_s),
             counts: state.counts,
         })
     }

@@ -183,7 +183,7 @@ pub struct ChannelCounts {
     pub over_range: u64,
     /// Samples whose check failed.
     pub damaged: u64,
-    /// Their times are at most so far off [s]; none where that was not told.
+    /// Their times are at most so far off [s]; none where that is not known.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub clock_bound_s: Option<f64>,
 }
@@ -199,7 +199,7 @@ impl ChannelCounts {
             repeated,
             over_range,
             damaged,
-            clock_bound_s: Some(brought.bound_s),
+            clock_bound_s: brought.bound_s,
         }
     }
 }

@@ -1,5 +1,4 @@
-//! How soon after its last sample a run's report is on the disk, provisional or final, measured at a
-//! virtual tank.
+//! How soon after its last sample a run's report, provisional or final, is on the disk.
 
 use std::path::Path;
 

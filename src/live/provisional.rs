@@ -6,6 +6,7 @@
 //! nothing of it enters a recording.
 
 use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -64,7 +65,8 @@ struct Shared {
 
 #[derive(Default)]
 struct Files {
-    is_there: bool,
+    /// Number of the run whose report is there, if any.
+    of: Option<u64>,
     told: Vec<Told>,
 }
 
@@ -145,7 +147,7 @@ impl Provisional {
 
     /// The recording has ended.
     pub(super) fn withdraw(&self) {
-        self.0.withdraw();
+        self.0.remove(&mut self.0.files());
     }
 }
 
@@ -155,9 +157,10 @@ impl Shared {
         self.files.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Removes what is there of a run that is none any more; one that has ended is replaced.
     fn withdraw(&self) {
         let mut files = self.files();
-        if files.is_there {
+        if files.of.is_some_and(|number| number > self.n_ended.load(Ordering::Acquire)) {
             self.remove(&mut files);
         }
     }
@@ -167,7 +170,7 @@ impl Shared {
             // It may never have been there.
             fs::remove_file(self.dir.join(name)).ok();
         }
-        files.is_there = false;
+        files.of = None;
         self.board.change(|status| status.provisional = None);
     }
 }
@@ -193,7 +196,12 @@ fn answer(
 
 fn tell(campaign: &Campaign, shared: &Shared, Offer { run, at_ns }: Offer, clock: &dyn Clock) {
     let number = run.number;
-    let Some((run, overview)) = run.identify(campaign, PROVISIONAL_ID) else { return };
+    // Half a run may be what nothing was made for, and nothing final may suffer from it.
+    let identified = catch_unwind(AssertUnwindSafe(|| run.identify(campaign, PROVISIONAL_ID)));
+    let Ok(identified) = identified else {
+        return tracing::error!("the run under way could not be identified: a panic");
+    };
+    let Some((run, overview)) = identified else { return };
     let mut files = shared.files();
     // The final report is there, or will be at once.
     if number <= shared.n_ended.load(Ordering::Acquire) {
@@ -203,7 +211,7 @@ fn tell(campaign: &Campaign, shared: &Shared, Offer { run, at_ns }: Offer, clock
         tracing::error!("provisional report not written: {error}");
         return;
     }
-    files.is_there = true;
+    files.of = Some(number);
     files.told.push(Told {
         start_s: run.run.start_s,
         end_s: run.run.end_s,

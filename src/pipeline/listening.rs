@@ -183,7 +183,7 @@ impl<'a> Listening<'a> {
         let drive = if self.drive_is_moment { Quantity::Moment } else { Quantity::Force };
         let tallies = [Quantity::Roll, drive].map(|quantity| self.tallies.get(&quantity));
         let [roll_bound_s, drive_bound_s] =
-            tallies.map(|tally| Some(tally?.between(start_s, end_s).bound_s));
+            tallies.map(|tally| tally?.between(start_s, end_s).bound_s);
         let is_common = match tallies {
             [Some(roll), Some(drive)] => roll.is_stamped_with(drive, start_s, end_s),
             _ => false,

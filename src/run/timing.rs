@@ -1,7 +1,7 @@
 //! How well the times of a run's samples are known, as its instruments stated it.
 
-/// Bounds of the times of the two channels of a run; nothing is stated where no instrument was
-/// read, as in a table.
+/// Bounds of the times of the two channels of a run; none is stated where no instrument was read,
+/// as in a table, or nobody has declared how late its filter makes it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Timing {
     /// The roll's times are at most so far off [s].
@@ -17,15 +17,18 @@ impl Timing {
     /// rectangular distributions, `sqrt((d_roll^2 + d_drive^2)/3)` (GUM 4.3.7); nil where one
     /// frame brought both.
     pub fn skew_sd_s(&self) -> Option<f64> {
-        let (roll_s, drive_s) = (self.roll_bound_s?, self.drive_bound_s?);
-        let both_s = if self.is_common { 0.0 } else { roll_s.hypot(drive_s) };
-        Some(both_s / 3.0_f64.sqrt())
+        if self.is_common {
+            return Some(0.0);
+        }
+        Some(self.roll_bound_s?.hypot(self.drive_bound_s?) / 3.0_f64.sqrt())
     }
 
     /// The time between roll and drive is at most so far off [s].
     pub fn skew_bound_s(&self) -> Option<f64> {
-        let (roll_s, drive_s) = (self.roll_bound_s?, self.drive_bound_s?);
-        Some(if self.is_common { 0.0 } else { roll_s + drive_s })
+        if self.is_common {
+            return Some(0.0);
+        }
+        Some(self.roll_bound_s? + self.drive_bound_s?)
     }
 
     /// Standard uncertainty of the rate of the roll's clock over `span_s` [-]: each end of the

@@ -36,8 +36,9 @@ pub struct Counted {
     pub quantity: Quantity,
     /// Time of its newest sample [s].
     pub time_s: f64,
-    /// The time of that sample is at most so far off [s].
-    pub bound_s: f64,
+    /// The time of that sample is at most so far off [s]; none where nobody has declared how late
+    /// the instrument's filter makes it.
+    pub bound_s: Option<f64>,
     /// What was counted until then.
     pub counts: Counts,
 }
@@ -49,8 +50,8 @@ pub struct Brought {
     pub quantity: Quantity,
     /// What was counted in it.
     pub counts: Counts,
-    /// Its times are at most so far off [s].
-    pub bound_s: f64,
+    /// Its times are at most so far off [s], where that is known.
+    pub bound_s: Option<f64>,
 }
 
 impl AddAssign for Counts {

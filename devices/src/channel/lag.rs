@@ -79,9 +79,14 @@ impl Lag {
         }
     }
 
+    /// Whether it is known how late readings are.
+    pub fn is_declared(&self) -> bool {
+        self.kind != LagKind::Unknown
+    }
+
     /// Whether nobody knows how late readings are, or the filter may shrink a roll.
     pub fn is_flagged(&self) -> bool {
-        self.kind == LagKind::Unknown || self.gain(FASTEST_ROLL_RAD_S) < KEPT_SHARE
+        !self.is_declared() || self.gain(FASTEST_ROLL_RAD_S) < KEPT_SHARE
     }
 }
 

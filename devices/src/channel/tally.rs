@@ -20,8 +20,8 @@ pub struct Tally {
 #[derive(Debug, Clone, Copy)]
 struct Entry {
     time_s: f64,
-    /// Largest bound of the samples since the entry before [s].
-    bound_s: f64,
+    /// Largest bound of the samples since the entry before [s], where all have one.
+    bound_s: Option<f64>,
     counts: Counts,
 }
 
@@ -36,7 +36,7 @@ impl Tally {
         let Counted { time_s, bound_s, counts, .. } = *counted;
         match self.entries.back_mut() {
             Some(last) if time_s - last.time_s < STEP_S => {
-                last.bound_s = last.bound_s.max(bound_s);
+                last.bound_s = larger(last.bound_s, bound_s);
                 last.counts = counts;
             }
             _ => self.entries.push_back(Entry { time_s, bound_s, counts }),
@@ -51,7 +51,8 @@ impl Tally {
         let until =
             |n: usize| n.checked_sub(1).map(|last| self.entries[last].counts).unwrap_or_default();
         let [from, to] = self.range(start_s, end_s);
-        let bound_s = self.entries.range(from..to).map(|entry| entry.bound_s).fold(0.0, f64::max);
+        let bounds_s = self.entries.range(from..to).map(|entry| entry.bound_s);
+        let bound_s = bounds_s.reduce(larger).flatten();
         Brought { quantity: self.quantity, counts: until(to) - until(from), bound_s }
     }
 
@@ -74,12 +75,17 @@ impl Tally {
     }
 }
 
+/// The larger of two bounds, where both are known.
+fn larger(one_s: Option<f64>, other_s: Option<f64>) -> Option<f64> {
+    Some(one_s?.max(other_s?))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn counted(time_s: f64, bound_s: f64, counts: Counts) -> Counted {
-        Counted { quantity: Quantity::Roll, time_s, bound_s, counts }
+        Counted { quantity: Quantity::Roll, time_s, bound_s: Some(bound_s), counts }
     }
 
     #[test]
@@ -95,10 +101,13 @@ mod tests {
         }
         let run = tally.between(25.0, 65.0);
         assert_eq!((run.counts.received, run.counts.lost, run.counts.damaged), (401, 7, 0));
-        assert!((run.bound_s - 2e-3).abs() < 1e-12, "{run:?}");
+        assert!((run.bound_s.unwrap() - 2e-3).abs() < 1e-12, "{run:?}");
         let rest = tally.between(65.1, 1000.0);
         assert_eq!((rest.counts.received, rest.counts.lost, rest.counts.damaged), (349, 0, 1));
-        assert!((rest.bound_s - 1e-3).abs() < 1e-12, "{rest:?}");
+        assert!((rest.bound_s.unwrap() - 1e-3).abs() < 1e-12, "{rest:?}");
+        // One sample of which nobody knows how late it is leaves none of the run.
+        tally.note(&Counted { bound_s: None, ..counted(100.0, 0.0, counts) });
+        assert_eq!(tally.between(65.1, 1000.0).bound_s, None);
     }
 
     #[test]

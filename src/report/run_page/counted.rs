@@ -5,7 +5,7 @@ use maud::{Markup, html};
 
 use super::RunPage;
 use crate::report::document::{number_cell, section, table, text_cell};
-use crate::report::number::significant;
+use crate::report::number::{UNKNOWN, significant};
 
 pub(super) fn part(page: &RunPage) -> Option<Markup> {
     let brought = &page.run.brought;
@@ -27,13 +27,14 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
                 @for count in [received, lost, repeated, over_range, damaged] {
                     (number_cell(&count.to_string()))
                 }
-                (number_cell(&significant(1e3 * bound_s, 2)))
+                @let bound = bound_s.map(|bound_s| significant(1e3 * bound_s, 2));
+                (number_cell(bound.as_deref().unwrap_or(UNKNOWN)))
             }
         })
         .collect();
     let caption = "Counted by the drivers from start to end of the run. What is over range is \
                    among the samples, but not used; what was repeated or damaged is not. Clock: its \
-                   times are at most so far off.";
+                   times are at most so far off, where it is known how late a filter makes them.";
     let is_whole = brought.iter().all(|channel| channel.counts.is_whole());
     (!rows.is_empty()).then(|| {
         section(
