@@ -16,6 +16,9 @@ use crate::campaign::{Campaign, Recording};
 use crate::results::Overview;
 use crate::run::{Event, Limits, Rejection, RunEnd, RunFinder, RunKind, Timing};
 
+/// Longest time before the end of a rest in which the next run may begin [s], with a margin.
+const AT_REST_S: f64 = 60.0;
+
 /// What a stream tells whoever collects its runs.
 pub(super) enum Heard {
     /// The next batch of samples covers this stretch [s] of absolute time.
@@ -137,6 +140,9 @@ impl<'a> Listening<'a> {
         let quantity = counted.quantity;
         let tally = self.tallies.entry(quantity).or_insert_with(|| Tally::new(quantity));
         tally.note(counted);
+        if self.finder.is_at_rest() {
+            tally.forget_before(counted.time_s - AT_REST_S);
+        }
     }
 
     /// The stream has ended; `notes` say what was lost of it.

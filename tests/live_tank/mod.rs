@@ -14,9 +14,9 @@ use devices::setup::DeviceConfig;
 use rolltank::campaign;
 
 pub(crate) use daemon::Daemon;
-pub(crate) use signals::{B1_PER_S, RELEASED_S, ROUND_S};
+pub(crate) use signals::{B1_PER_S, RELEASED_S};
 
-use signals::{raw_force, raw_roll, raw_speed};
+use signals::{ROUND_S, raw_force, raw_roll, raw_speed};
 
 /// The campaign file of the tank, its ports below the folder.
 pub(crate) const CAMPAIGN: &str = r#"name = "emulated tank"
@@ -91,6 +91,12 @@ impl LiveTank {
     pub(crate) fn of_devices(devices: &str) -> Self {
         let rest = CAMPAIGN.split("[[device]]").next().unwrap_or_default();
         Self::with(&format!("{rest}{devices}"), 1.0, false)
+    }
+
+    /// The same with a model that nobody touches.
+    pub(crate) fn calm_of_devices(devices: &str) -> Self {
+        let rest = CAMPAIGN.split("[[device]]").next().unwrap_or_default();
+        Self::with(&format!("{rest}{devices}"), 1.0, true)
     }
 
     /// A model that nobody touches, and a force cell to be loaded, on a clock of that speed.

@@ -46,6 +46,14 @@ impl Tally {
         }
     }
 
+    /// Forgets what no stretch that begins later needs.
+    pub fn forget_before(&mut self, time_s: f64) {
+        // The state before such a stretch is that of the last entry before it.
+        while self.entries.get(1).is_some_and(|second| second.time_s < time_s - STEP_S) {
+            self.entries.pop_front();
+        }
+    }
+
     /// What the channel brought from `start_s` to `end_s`.
     pub fn between(&self, start_s: f64, end_s: f64) -> Brought {
         let until =
@@ -102,6 +110,7 @@ mod tests {
         let run = tally.between(25.0, 65.0);
         assert_eq!((run.counts.received, run.counts.lost, run.counts.damaged), (401, 7, 0));
         assert!((run.bound_s.unwrap() - 2e-3).abs() < 1e-12, "{run:?}");
+        tally.forget_before(65.1);
         let rest = tally.between(65.1, 1000.0);
         assert_eq!((rest.counts.received, rest.counts.lost, rest.counts.damaged), (349, 0, 1));
         assert!((rest.bound_s.unwrap() - 1e-3).abs() < 1e-12, "{rest:?}");
