@@ -60,6 +60,8 @@ fn what_a_decay_says_is_told_before_its_end_is_known_and_replaced_by_what_it_say
     assert!(served.status == 200 && served.body.contains("Provisional"), "{served:?}");
 
     daemon.wait_for("first_after_s=", 1);
+    let results = || tank.text("results/identification.json");
+    daemon.wait_until("the results hold it", || results().contains("start_s"));
     // Its own report is there, and what was told before is not, or is of the next one.
     let [begun_s, ends_s] = ["start_s", "end_s"].map(|key| run[key].as_f64().expect(key));
     let of_it = |text: &str| {
@@ -67,7 +69,7 @@ fn what_a_decay_says_is_told_before_its_end_is_known_and_replaced_by_what_it_say
         told["identification"]["runs"][0]["start_s"].as_f64().is_some_and(|s| s < begun_s + 10.0)
     };
     assert!(!of_it(&tank.text(numbers)), "{}", tank.text(numbers));
-    let found = identification(&tank.text("results/identification.json"));
+    let found = identification(&results());
     let last = &found["runs"][0];
     assert_ne!(last["id"], "provisional");
     assert!((last["start_s"].as_f64().expect("a start") - begun_s).abs() < 1.0, "{last}");

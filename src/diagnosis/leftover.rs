@@ -43,8 +43,8 @@ const SURE_LINE: f64 = 10.0;
 
 /// Share by which the noise in the band of the roll may differ from that above it [-].
 const COLOUR: f64 = 0.2;
-/// Slow error of an instrument's clock that nobody has stated [s]: what is allowed behind an adapter
-/// that delivers every 16 ms.
+/// Slow error of an instrument's clock that nobody has stated [s]: what is allowed behind an
+/// adapter that delivers every 16 ms.
 const CLOCK_S: f64 = 1e-3;
 
 impl Leftover {

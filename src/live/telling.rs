@@ -100,8 +100,8 @@ impl UnderWay<'_> {
         }
     }
 
-    /// The provisional reports of a run seen from its final one, which came `final_s` after its last
-    /// sample.
+    /// The provisional reports of a run seen from its final one, which came `final_s` after its
+    /// last sample.
     fn told_before(
         &self,
         found: &FoundRun,

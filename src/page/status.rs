@@ -146,8 +146,8 @@ pub struct RunsStatus {
 /// The provisional reports of a run, seen from its final one.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct ToldBefore {
-    /// From the run's last sample to the first report on disk that holds it [s]: the final one where
-    /// no provisional one did.
+    /// From the run's last sample to the first report on disk that holds it [s]: the final one
+    /// where no provisional one did.
     pub first_after_s: f64,
     /// By how much that one ended later than the final one [s]; none where it is the final one.
     pub first_ends_later_s: Option<f64>,
@@ -163,8 +163,8 @@ pub struct ToldBefore {
 const LATENCIES_KEPT: usize = 1000;
 
 impl RunsStatus {
-    /// One more report, so long after the sample by which the end of its run was known, that so long
-    /// after the last of the run, and what was told of it before.
+    /// One more report, so long after the sample by which the end of its run was known, that so
+    /// long after the last of the run, and what was told of it before.
     pub fn reported(&mut self, latency_s: f64, known_after_s: f64, before: ToldBefore) {
         self.n_identified += 1;
         if self.latencies_s.len() == LATENCIES_KEPT {

@@ -57,8 +57,8 @@ pub(super) fn banner(run: &IdentifiedRun) -> Option<Markup> {
         html! {
             p.warning {
                 "Provisional: the run is " (state(run)) ". This page holds it up to "
-                (fixed(run.run.end_s, 1)) " s, is in no table and no law of the campaign, and gives "
-                "way to the run's own when its end is known."
+                (fixed(run.run.end_s, 1)) " s, is in no table and no law of the campaign, and "
+                "gives way to the run's own when its end is known."
             }
         }
     })

@@ -1,7 +1,7 @@
 //! What repeats and instruments leave unsure of the damping, and which conditions differ.
 //!
-//! Everything is told of `b_eq`: repeats of free decays at the amplitude at which runs are compared,
-//! their comparison at several, and the budget there of decays and of forced runs.
+//! Everything is told of `b_eq`: repeats of free decays at the amplitude at which runs are
+//! compared, their comparison at several, and the budget there of decays and of forced runs.
 
 mod budget;
 mod comparison;

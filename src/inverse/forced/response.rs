@@ -176,8 +176,8 @@ impl Balance {
         (0..units.len()).map(|u| triangle.explained_by(N, N + u)).collect()
     }
 
-    /// Shift of the unknowns by a unit delay of the moment, which the covariance takes with what the
-    /// timing of the run leaves unsure: the moment's own rate, explained by the unknowns.
+    /// Shift of the unknowns by a unit delay of the moment, which the covariance takes with what
+    /// the timing of the run leaves unsure: the moment's own rate, explained by the unknowns.
     fn delay(
         &mut self,
         roll: &FourierSeries,

@@ -1,8 +1,8 @@
 //! What an error of the time between roll and moment does to a forced run.
 //!
 //! A moment that is stamped late by `d` is read as `M(t - d) = M(t) - d M'(t)`. In steady motion
-//! `phi = A cos(w t)`, `M = I phi'' + B phi' + K phi` leads by `eps` with `|M| sin(eps) = B w A` and
-//! `|M| cos(eps) = (K - I w^2) A`, so that the delay turns `eps` by `-w d` and
+//! `phi = A cos(w t)`, `M = I phi'' + B phi' + K phi` leads by `eps` with `|M| sin(eps) = B w A`
+//! and `|M| cos(eps) = (K - I w^2) A`, so that the delay turns `eps` by `-w d` and
 //!
 //! `dB = -|M| cos(eps) d/A = -(K - I w^2) d`,  `dI = -B d`:
 //!

@@ -221,7 +221,8 @@ impl Fit<'_> {
         }
     }
 
-    /// Sensitivities, residual and the effect of a delay whitened under the moment's noise and a wandering moment.
+    /// Sensitivities, residual and the effect of a delay, whitened under the moment's noise and a
+    /// wandering moment.
     fn whiten(&self, point: &Point, walk: f64) -> Filtered {
         let motion = point.driven.motion(self.moment, &self.record.time_s);
         let mut columns: Vec<Vec<f64>> =
@@ -233,7 +234,7 @@ impl Fit<'_> {
             roll - point.zero_rad - m.roll_rad - half * m.acceleration_rad_per_s2
         };
         columns.push(self.record.roll_rad.iter().zip(&motion).map(residual).collect());
-        // Of a moment that is read late by d the whole roll is simulated late: by -d times its rate.
+        // A moment that is read late by d has the whole roll simulated late: by -d times its rate.
         columns.push(motion.iter().map(|m| m.rate_rad_per_s).collect());
         let columns: Vec<Column<'_>> = columns.iter().map(|c| Column::Record(c)).collect();
         let w = point.driven.natural_rad_s();

@@ -83,8 +83,8 @@ fn of_kind(id: &str, runs: &str, budgets: &[&Budget], sources: &[Source]) -> Mar
     columns.extend(sources.iter().map(|(source, kind, _)| (*source, *kind)));
     columns.extend([("u", "1/s"), ("U b_{eq}", "%"), ("U B̂₄₄", "%")]);
     let caption = format!(
-        "Standard uncertainties of the mean b_{{eq}} of n {runs} at roll amplitude A in 1/s, type A \
-         or B, u all of them together; U = k u as a share of the value, k for 95 % with the \
+        "Standard uncertainties of the mean b_{{eq}} of n {runs} at roll amplitude A in 1/s, type \
+         A or B, u all of them together; U = k u as a share of the value, k for 95 % with the \
          effective degrees of freedom."
     );
     let rows: Vec<Markup> = budgets.iter().map(|budget| row(budget, sources)).collect();

@@ -33,8 +33,9 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
         })
         .collect();
     let caption = "Counted by the drivers from start to end of the run. What is over range is \
-                   among the samples, but not used; what was repeated or damaged is not. Clock: its \
-                   times are at most so far off, where it is known how late a filter makes them.";
+                   among the samples, but not used; what was repeated or damaged is not. Clock: \
+                   its times are at most so far off, where it is known how late a filter makes \
+                   them.";
     let is_whole = brought.iter().all(|channel| channel.counts.is_whole());
     (!rows.is_empty()).then(|| {
         section(

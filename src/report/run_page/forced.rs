@@ -41,10 +41,10 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
             @let amplitude_rad = forced.roll_amplitude_rad.mean;
             @let weight = cubic_weight(forced.frequency_rad_s.mean, amplitude_rad);
             p.note {
-                "By the stated bounds of their clocks the time between roll and moment has a standard "
-                "uncertainty of " (significant(1e3 * skew.sd_s, 2)) " ms. That is "
-                (significant(skew.damping_sd_per_s(weight), 2)) " 1/s of the standard deviation of b"
-                sub { "eq" } " at this amplitude, and does not become less with a longer run."
+                "By the stated bounds of their clocks the time between roll and moment has a "
+                "standard uncertainty of " (significant(1e3 * skew.sd_s, 2)) " ms. That is "
+                (significant(skew.damping_sd_per_s(weight), 2)) " 1/s of the standard deviation "
+                "of b" sub { "eq" } " at this amplitude; a longer run makes it no less."
             }
         }
     };
