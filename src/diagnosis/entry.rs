@@ -1,7 +1,7 @@
 //! Whether the best of the effects that were tried may enter the model.
 
 use super::alike::{SAME, contains, is_approximate, is_same};
-use super::growth::{ENTERS, Entered, excess, leftovers, sure_excess};
+use super::growth::{ENTERS, Entered, excess, leftovers, sure_excess, sure_share};
 use super::leftover::Leftover;
 use super::settle::Settled;
 use super::survey::Survey;
@@ -50,13 +50,14 @@ pub(super) fn best(
         return Best::ExplainsTooLittle;
     }
     let removed = excess(&before) - excess(&after);
+    let found = sure_share(&before);
     let equivalent_to = tried[1..]
         .iter()
         .filter(|one| !contains(one.id, best.id))
         .filter(|one| is_same(survey, current, &best.settled, &one.settled, sure_excess(&after)))
         .map(|one| one.id)
         .collect();
-    let entered = Entered { id: best.id, log_bayes_factor, removed, equivalent_to };
+    let entered = Entered { id: best.id, log_bayes_factor, removed, found, equivalent_to };
     let settled = tried.swap_remove(0).settled;
     if known.iter().any(|known| is_crumb_of(known, &entered, &settled)) {
         Best::IsCrumb(settled, entered)

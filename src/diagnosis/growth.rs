@@ -27,6 +27,8 @@ pub(super) struct Entered {
     pub(super) log_bayes_factor: f64,
     /// What it removes of what is left beyond the noise, in units of its variance.
     pub(super) removed: f64,
+    /// Sum over channels of the shares that were left for sure before it entered [-].
+    pub(super) found: f64,
     pub(super) equivalent_to: Vec<&'static str>,
 }
 
@@ -209,6 +211,12 @@ pub(super) fn excess(all: &[Leftover]) -> f64 {
 /// The same of the channels in which something is left for sure: noise alone adds up too.
 pub(super) fn sure_excess(all: &[Leftover]) -> f64 {
     all.iter().filter(|l| l.is_structure()).map(|l| l.excess).sum()
+}
+
+/// Sum over channels of the shares that are left for sure [-]: what counts is how much of the
+/// motion is not understood, however quiet the channel.
+pub(super) fn sure_share(all: &[Leftover]) -> f64 {
+    all.iter().filter(|l| l.is_structure()).map(|l| l.share).sum()
 }
 
 /// What a fit leaves of every channel of every run.

@@ -22,6 +22,7 @@ mod leftover;
 mod next_run;
 mod observation;
 mod over_scatters;
+mod partial;
 mod plan;
 mod records;
 mod run_fit;

@@ -7,6 +7,7 @@ use crate::inverse::record::Record;
 use crate::model::course::{N_COURSE, N_HARMONICS};
 use crate::model::{Base, Circumstances, Facts};
 use crate::results::IdentifiedRun;
+use crate::roll::cross_modes::Section;
 use crate::run::{Run, RunKind, Series};
 
 /// A run ready to be fitted.
@@ -140,6 +141,7 @@ impl Observation {
             span_s: record.span_s(),
             gravity_m_s2: campaign.water.gravity_m_s2,
             clear_width_m: width_m.map(|width_m| width_m - campaign.hull.beam_m),
+            section: width_m.map(|width_m| Section { width_m, depth_m: campaign.tank.depth_m }),
             sample_rate_hz,
             order,
             has_moment: !moment.time_s.is_empty(),

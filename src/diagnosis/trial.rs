@@ -88,12 +88,15 @@ pub(super) fn is_newest_plausible(survey: &Survey, settled: &Settled) -> bool {
 }
 
 /// Whether an effect lies inside its physical range: its strengths as far as their deviations
-/// allow, the shapes of a memory off the edges at which they are held. Others may lie at an edge:
-/// friction is as sharp as can be.
+/// allow, the shapes of a memory off the edges at which they are held, the frequencies of a wave
+/// among those of the tank. Other shapes may lie at an edge: friction is as sharp as can be.
 pub(super) fn is_plausible(survey: &Survey, settled: &Settled, e: usize) -> bool {
     let extension = &settled.fit.extensions[e];
     let layout = Layout::new(survey, &settled.fit);
     let n_strengths = extension.effect.strengths.len();
+    if odds_of_shapes(survey, settled, e, &layout) < 0.0 {
+        return false;
+    }
     extension.slots.iter().enumerate().all(|(s, values)| {
         let remembers = matches!(extension.effect.acts, Acts::Lagging(_));
         let is_held = remembers
@@ -110,4 +113,23 @@ pub(super) fn is_plausible(survey: &Survey, settled: &Settled, e: usize) -> bool
         });
         is_strong && !is_held
     })
+}
+
+/// Logarithm of the odds, over all runs, that the shapes of an effect are those of its cause.
+fn odds_of_shapes(survey: &Survey, settled: &Settled, e: usize, layout: &Layout) -> f64 {
+    let extension = &settled.fit.extensions[e];
+    let n_strengths = extension.effect.strengths.len();
+    let of_slot = |(s, values): (usize, &Vec<f64>)| -> f64 {
+        let run = extension.slot_of.iter().position(|slot| *slot == Some(s));
+        let Some(run) = run else { return 0.0 };
+        let shapes = values.iter().enumerate().skip(n_strengths);
+        shapes
+            .map(|(k, shape)| {
+                let column = layout.parameter(&settled.fit, e, s, k);
+                let sd = settled.solution.covariance[column][column].max(0.0).sqrt();
+                effects::log_odds_of_shape(extension.effect, &survey.runs[run].at, *shape, sd)
+            })
+            .sum()
+    };
+    extension.slots.iter().enumerate().map(of_slot).sum()
 }

@@ -1,11 +1,12 @@
 //! What is told of a campaign: verdict, causes in order of entry, gain, bias, what is left.
 
 use super::gain::{self, HeldOut};
-use super::growth::{Grown, excess, grow, leftovers};
+use super::growth::{Grown, grow, leftovers, sure_share};
 use super::layout::Layout;
 use super::leftover::Leftover;
 use super::next_run::{NextRun, next_run};
 use super::observation::Observation;
+use super::partial::{MOST_LEFT, take_out_parts};
 use super::records::Shown;
 use super::settle::Settled;
 use super::survey::{N_LAW, Survey};
@@ -85,7 +86,7 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// Causes in order of entry.
     pub causes: Vec<Cause>,
-    /// Effects that explain a part, in runs where most remains unexplained.
+    /// Effects that explain a part of what they found, most of which remains unexplained.
     pub suspects: Vec<&'static str>,
     /// Effects that would explain something only with impossible numbers.
     pub implausible: Vec<&'static str>,
@@ -109,33 +110,26 @@ pub struct Diagnosis {
     pub model: ModelFile,
 }
 
-/// Share of what the base model leaves beyond which causes are no whole story; by trial on
-/// simulated campaigns, of whose catalogued effects it takes only free surfaces from their names.
-const MOST_LEFT: f64 = 0.1;
-
 /// Diagnoses the runs of a campaign; none without runs.
 pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
     if runs.is_empty() {
         return None;
     }
     let survey = Survey::new(runs);
-    let grown = grow(&survey);
+    let mut grown = grow(&survey);
+    let shown = Shown::of(&survey);
+    let is_untold = |left: &Leftover| !shown.tells(&survey, &left.run, left.frequency_rad_s);
+    let mut suspects = take_out_parts(&survey, &mut grown, &is_untold);
     let left_before = leftovers(&survey, &grown.base.fit);
     let left_after = leftovers(&survey, &grown.last.fit);
     let mut causes = causes(&survey, &grown);
-    let mut suspects = Vec::new();
-    let shown = Shown::of(&survey);
-    let untold_left: Vec<Leftover> = left_after
-        .iter()
-        .filter(|left| !shown.tells(&survey, &left.run, left.frequency_rad_s))
-        .cloned()
-        .collect();
+    let untold_left: Vec<Leftover> =
+        left_after.iter().filter(|left| is_untold(left)).cloned().collect();
     let is_left = untold_left.iter().any(Leftover::is_sure);
-    let is_part = is_left && excess(&untold_left) > MOST_LEFT * excess(&left_before);
+    let is_part = is_left && sure_share(&untold_left) > MOST_LEFT * sure_share(&left_before);
     let untold = is_part || grown.is_unnamed;
     if untold {
-        suspects = causes.iter().map(|cause| cause.effect).collect();
-        causes.clear();
+        suspects.splice(0..0, causes.drain(..).map(|cause| cause.effect));
     }
     causes.extend(shown.causes());
     let verdict = if untold {

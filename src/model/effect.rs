@@ -2,6 +2,7 @@
 
 use super::echo::Taps;
 use super::number::Sloped;
+use crate::roll::cross_modes::Section;
 use crate::run::RunKind;
 
 /// One number of an effect.
@@ -83,6 +84,8 @@ pub struct Circumstances {
     pub gravity_m_s2: f64,
     /// Clear water between both tank walls and both sides of the model [m], where known.
     pub clear_width_m: Option<f64>,
+    /// Section of the tank, where its width is known.
+    pub section: Option<Section>,
     /// Sample rate of the roll channel [Hz].
     pub sample_rate_hz: f64,
     /// Place in the order of runs.

@@ -76,6 +76,7 @@ mod tests {
             span_s: 12.0,
             gravity_m_s2: 9.81,
             clear_width_m: None,
+            section: None,
             sample_rate_hz: 50.0,
             order: 0,
             has_moment: true,

@@ -1,5 +1,6 @@
 //! The physics of rolling: pure formulas, no input or output, no randomness.
 
+pub mod cross_modes;
 pub mod damping;
 pub mod equation;
 pub mod exciting_moment;

@@ -5,7 +5,7 @@ use crate::hidden_tank::campaign::Asked;
 use crate::hidden_tank::draw::Draw;
 use crate::hidden_tank::effects::{CATALOGUED, INVENTED};
 use crate::hidden_tank::plan::RunSet;
-use crate::hidden_tank::score::{UNTESTABLE, in_class};
+use crate::hidden_tank::score::{UNTESTABLE, are_companions, in_class};
 
 /// Pairs of the whole matrix, and the seeds of clean campaigns by one seed of the others.
 const PAIRS_BY_SEED: usize = 5;
@@ -59,7 +59,7 @@ fn clean(arguments: &Arguments, seed: u64) -> Vec<Asked> {
     seeds.flat_map(of_seed).collect()
 }
 
-/// Pairs of testable effects of different classes, on the richer run sets.
+/// Pairs of testable effects of different classes, none brought along by the other, on the richer run sets.
 fn pairs(arguments: &Arguments, seed: u64) -> Vec<Asked> {
     let testable: Vec<&str> =
         CATALOGUED.iter().map(|row| row.id).filter(|id| !UNTESTABLE.contains(id)).collect();
@@ -68,7 +68,7 @@ fn pairs(arguments: &Arguments, seed: u64) -> Vec<Asked> {
     while all.len() < PAIRS_BY_SEED {
         let set = [RunSet::Speeds, RunSet::Forced][draw.index(2)];
         let [one, other] = [(); 2].map(|()| testable[draw.index(testable.len())]);
-        if one != other && !in_class(one, other, set) {
+        if one != other && !in_class(one, other, set) && !are_companions(one, other) {
             let own = seed * PAIRS_BY_SEED as u64 + all.len() as u64;
             all.push(asked(arguments, set, vec![one.into(), other.into()], 2.0, own));
         }

@@ -7,9 +7,11 @@ use serde_json::{Value, json};
 
 use crate::coverage::covered;
 use crate::hidden_tank::campaign::{Asked, Campaign};
+use crate::hidden_tank::effects::labels::MISLABELLED;
 use crate::hidden_tank::fit::{INDISTINGUISHABLE, left_by, misfit};
 use crate::hidden_tank::folder::play;
 use crate::hidden_tank::next_run::towed;
+use crate::hidden_tank::plan::Pass;
 use crate::hidden_tank::score::{Outcome, score};
 use crate::hidden_tank::timeline::Timeline;
 use crate::hidden_tank::verdict::{Verdict, diagnose};
@@ -22,8 +24,15 @@ pub(crate) fn read(file: &Path) -> Vec<Value> {
 
 /// What the base cannot take up of each hidden effect alone.
 pub(crate) fn lambdas(campaign: &Campaign) -> Vec<f64> {
-    let alone =
-        campaign.effects.iter().map(|effect| misfit(campaign, std::slice::from_ref(effect), None));
+    // A wrong label belongs to the passes, and is the effect of none but itself.
+    let well_labelled = Campaign {
+        passes: campaign.passes.iter().map(Pass::well_labelled).collect(),
+        ..campaign.clone()
+    };
+    let alone = campaign.effects.iter().map(|effect| {
+        let with = if effect.row.id == MISLABELLED.id { campaign } else { &well_labelled };
+        misfit(with, std::slice::from_ref(effect), None)
+    });
     alone.map(|lambda| (lambda * 10.0).round() / 10.0).collect()
 }
 

@@ -51,7 +51,7 @@ pub(crate) struct Campaign {
     /// Its roll model.
     pub(crate) base: Base,
     /// The other hull, which a mislabelled run may have.
-    other: Base,
+    pub(crate) other: Base,
     /// The passes as the crew made them.
     pub(crate) passes: Vec<Pass>,
     /// What hides.

@@ -62,15 +62,14 @@ impl Pass {
         }
     }
 
+    /// The pass with the labels that it should have.
+    pub(crate) fn well_labelled(&self) -> Self {
+        Self { other_hull: false, speed_shown: 1.0, force_reversed: false, ..self.clone() }
+    }
+
     /// The pass as its labels have it.
     pub(crate) fn as_labelled(&self) -> Self {
-        Self {
-            speed_m_s: self.speed_m_s * self.speed_shown,
-            other_hull: false,
-            speed_shown: 1.0,
-            force_reversed: false,
-            ..self.clone()
-        }
+        Self { speed_m_s: self.speed_m_s * self.speed_shown, ..self.well_labelled() }
     }
 
     /// The rod drives the model.

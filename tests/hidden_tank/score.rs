@@ -60,6 +60,11 @@ pub(crate) fn in_class(one: &str, other: &str, set: RunSet) -> bool {
         })
 }
 
+/// Whether one of two effects brings the other along, so that both are one.
+pub(crate) fn are_companions(one: &str, other: &str) -> bool {
+    COMPANIONS.iter().any(|pair| *pair == (one, other) || *pair == (other, one))
+}
+
 /// Scores a verdict against what hides; `stands_for(cause, hidden)` is asked last, whether on
 /// these very runs the cause reproduces the hidden effect within the noise.
 pub(crate) fn score(

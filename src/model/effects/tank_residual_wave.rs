@@ -1,7 +1,10 @@
 //! Waves of an earlier run still press on the model.
 
-use crate::model::effect::{Acts, Effect, Instant, Law, Layer, Parameter, Scope, any_run, each};
+use crate::model::effect::{
+    Acts, Circumstances, Effect, Instant, Law, Layer, Parameter, Scope, any_run, each,
+};
 use crate::model::number::Number;
+use crate::roll::cross_modes;
 
 /// The effect.
 pub(super) const EFFECT: Effect = Effect {
@@ -27,4 +30,17 @@ pub(super) const EFFECT: Effect = Effect {
 fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     let (sin, cos) = (p[2] * i.time_s).sin_cos();
     p[0] * cos + p[1] * sin
+}
+
+/// Share to which a tank's modes follow from its width and depth.
+const MODES_KNOWN: f64 = 0.005;
+
+/// Logarithm of the odds that a wave of `frequency_rad_s` [rad/s], known to `sd_rad_s` [rad/s], is
+/// a standing wave of the tank: what is left of an earlier run, against any frequency as likely.
+pub(super) fn log_odds_of_mode(run: &Circumstances, frequency_rad_s: f64, sd_rad_s: f64) -> f64 {
+    let Some(section) = run.section else { return 0.0 };
+    let (mode, spacing) = cross_modes::nearest(frequency_rad_s, &section, run.gravity_m_s2);
+    let sd = sd_rad_s.hypot(MODES_KNOWN * mode);
+    let off = (frequency_rad_s - mode) / sd;
+    (spacing / (sd * std::f64::consts::TAU.sqrt())).ln() - 0.5 * off * off
 }

@@ -5,7 +5,7 @@ use crate::hidden_tank::plan::Pass;
 
 /// One run with another hull (kind 0), a speed in knots (1) or a reversed load cell (2); where
 /// the campaign has no run for a kind, it is another hull. A size is a kind here.
-pub(super) const MISLABELLED: Row = Row {
+pub(crate) const MISLABELLED: Row = Row {
     id: "run.mislabelled",
     symbols: &["kind [-]", "place [-]"],
     draw: |size, draw, _| {

@@ -6,7 +6,7 @@ mod exciter;
 mod flow_history;
 mod force_cell;
 mod invented;
-mod labels;
+pub(crate) mod labels;
 mod restoring;
 mod rig;
 mod roll_sensor;
