@@ -72,7 +72,7 @@ leave() {
         sleep 0.2
     done
 }
-trap 'kill "$board" 2>/dev/null; [ -z "${init:-}" ] || kill -9 "$init" 2>/dev/null; wait "$shell" 2>/dev/null; leave' EXIT
+trap 'set +e; kill "$board" 2>/dev/null; [ -z "${init:-}" ] || kill -9 "$init" 2>/dev/null; wait "$shell" 2>/dev/null; leave' EXIT
 init=
 for _ in $(seq 50); do
     init=$(pgrep -f -P "$shell" . | head -1 || true)
