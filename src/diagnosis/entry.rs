@@ -8,6 +8,8 @@ use super::survey::Survey;
 use super::trial::Tried;
 use crate::model::Scope;
 
+/// The same for another effect: no form fits the first to the last digit.
+const ENTERS_BESIDE: f64 = 12.0;
 /// Share of what is left for sure that an effect must take away to enter.
 const ENOUGH: f64 = 0.2;
 /// Share of what an approximate effect removes that it may leave of itself: no other effect.
@@ -42,7 +44,7 @@ pub(super) fn best(
     prefer_the_part(&mut tried);
     let Some(best) = tried.first() else { return Best::None };
     let log_bayes_factor = best.settled.log_evidence - current.log_evidence;
-    if log_bayes_factor < ENTERS {
+    if log_bayes_factor < if known.is_empty() { ENTERS } else { ENTERS_BESIDE } {
         return Best::None;
     }
     let (before, after) = (leftovers(survey, &current.fit), leftovers(survey, &best.settled.fit));

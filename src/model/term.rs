@@ -54,7 +54,7 @@ impl Term {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::model::course::{Course, N_COURSE};
     use crate::model::effects;
@@ -63,7 +63,8 @@ mod tests {
     use crate::model::{Acts, Circumstances};
     use crate::run::RunKind;
 
-    fn run(kind: RunKind) -> Circumstances {
+    /// Some run of a kind, in a tank of unknown width.
+    pub(in crate::model) fn run(kind: RunKind) -> Circumstances {
         Circumstances {
             kind,
             froude: 0.2,

@@ -7,8 +7,8 @@ use crate::model::number::Number;
 pub(super) const EFFECT: Effect = Effect {
     id: "exciter.pin_play",
     layer: Layer::Exciter,
-    equation: "m K A exp(-t/tr) sin(v t), t since M changed sign",
-    strengths: &[Parameter::new("m", "-", 0.1, [-2.0, 2.0])],
+    equation: "m K exp(-t/tr) sin(v t), t since M changed sign",
+    strengths: &[Parameter::new("m", "rad", 0.01, [-0.2, 0.2])],
     shapes: &[
         Parameter::new("tr", "s", 0.02, [0.005, 0.3]),
         Parameter::new("v", "rad/s", 30.0, [40.0, 600.0]),
@@ -35,7 +35,9 @@ fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     }
     let since_s = tangent.chain(angle, (1.0 + tangent.value().powi(2)).recip()) / rolling;
     let (ringing, _) = (p[2] * since_s).sin_cos();
-    let size = inertia * w * w * i.run.amplitude_rad * growth.value().signum();
+    // The gap closes against the contact's stiffness, whatever the roll: play, stiffness and arm
+    // make one moment, told as a share of the restoring of a radian.
+    let size = inertia * w * w * growth.value().signum();
     // Gone by the time the moment turns, whatever is left of the ringing.
     let fading = (tangent * tangent + 1.0).powf(N::from(-0.5));
     p[0] * (-since_s / p[1]).exp() * ringing * fading * size

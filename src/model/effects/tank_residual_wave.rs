@@ -44,3 +44,23 @@ pub(super) fn log_odds_of_mode(run: &Circumstances, frequency_rad_s: f64, sd_rad
     let off = (frequency_rad_s - mode) / sd;
     (spacing / (sd * std::f64::consts::TAU.sqrt())).ln() - 0.5 * off * off
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::term::tests::run;
+    use crate::roll::cross_modes::Section;
+    use crate::run::RunKind;
+
+    #[test]
+    fn a_wave_off_the_modes_of_the_tank_is_none_that_was_left() {
+        let section = Some(Section { width_m: 10.0, depth_m: Some(5.0) });
+        let known = Circumstances { section, ..run(RunKind::Decay) };
+        assert!(log_odds_of_mode(&known, 6.80, 0.02) > 1.0);
+        assert!(log_odds_of_mode(&known, 6.95, 0.02) < -3.0);
+        // Nothing is held against a frequency that is hardly known, nor in a tank of any width.
+        assert!(log_odds_of_mode(&known, 6.95, 1.0).abs() < 2.0);
+        let unknown = Circumstances { section: None, ..known };
+        assert!(log_odds_of_mode(&unknown, 6.95, 0.02).abs() < 1e-12);
+    }
+}

@@ -32,15 +32,31 @@ fn in_reach(run: &Circumstances) -> bool {
     outrun(run) < 1.0
 }
 
+/// Trips that are tried, as shares of that of the middle of the tank.
+const SHARES: [f64; 8] = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3];
+/// Share to which a model's place amid the tank makes its trip known.
+const TRIP_KNOWN: f64 = 0.15;
+
 /// Round trips at the group velocity `g/(2 w)` in deep water, as far apart as an echo is wide.
 fn delays(run: &Circumstances) -> Vec<Vec<f64>> {
     match run.clear_width_m {
         Some(width_m) => {
             let trip_s = wall_waves::trip_s(width_m, run.natural_rad_s, run.gravity_m_s2);
-            each(&[0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3].map(|share| share * trip_s))
+            each(&SHARES.map(|share| share * trip_s))
         }
         None => each(&[8.0, 10.0, 12.0, 14.0, 17.0, 20.0]),
     }
+}
+
+/// Logarithm of the odds that an echo after `delay_s` [s], known to `sd_s` [s], is back from the
+/// walls, against any of the trips that are tried as likely; nil where the width is not known.
+pub(super) fn log_odds_of_trip(run: &Circumstances, delay_s: f64, sd_s: f64) -> f64 {
+    let Some(width_m) = run.clear_width_m else { return 0.0 };
+    let trip_s = wall_waves::trip_s(width_m, run.natural_rad_s, run.gravity_m_s2);
+    let sd = sd_s.hypot(TRIP_KNOWN * trip_s);
+    let range_s = (SHARES[SHARES.len() - 1] - SHARES[0]) * trip_s;
+    let off = (delay_s - trip_s) / sd;
+    (range_s / (sd * std::f64::consts::TAU.sqrt())).ln() - 0.5 * off * off
 }
 
 /// Taps of the echo on either side of its delay, and their spacing in widths of the chirp.
@@ -81,4 +97,20 @@ fn taps<N: Number>(run: &Circumstances, p: &[N]) -> Vec<Tap<N>> {
 fn rotation<N: Number>(angle: N) -> [N; 2] {
     let (sin, cos) = angle.sin_cos();
     [cos, sin]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::term::tests::run;
+    use crate::run::RunKind;
+
+    #[test]
+    fn an_echo_after_half_the_trip_is_none_from_the_walls() {
+        // Seven metres of clear water at 6.9 rad/s: a trip of 9.8 s.
+        let known = Circumstances { clear_width_m: Some(7.0), ..run(RunKind::Decay) };
+        assert!(log_odds_of_trip(&known, 9.8, 0.1) > 0.5);
+        assert!(log_odds_of_trip(&known, 5.4, 0.1) < -3.0);
+        assert!(log_odds_of_trip(&run(RunKind::Decay), 5.4, 0.1).abs() < 1e-12);
+    }
 }
