@@ -1,7 +1,6 @@
 //! What a campaign has taught so far: runs, rejections, damping against Froude number.
 
-use devices::Quantity;
-use devices::channel::Counts;
+use devices::channel::Brought;
 
 use crate::inverse::identification::{EquivalentDamping, FroudeLaw, Identification};
 use crate::run::{Run, Series};
@@ -21,8 +20,8 @@ pub struct IdentifiedRun {
     pub froude: f64,
     /// How densely it was sampled.
     pub sampling: Sampling,
-    /// What the instruments counted on each channel of it; none where no instrument was read.
-    pub counts: Vec<(Quantity, Counts)>,
+    /// What the instruments brought on each channel of it; none where no instrument was read.
+    pub brought: Vec<Brought>,
     /// The run as found.
     pub run: Run,
     /// What it says.

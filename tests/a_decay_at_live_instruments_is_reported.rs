@@ -1,6 +1,7 @@
 //! The daemon attaches, records, finds a decay, identifies it, and leaves everything whole.
 
 use super::campaign_folder::rolltank;
+use super::http::get;
 use super::live_tank::{B1_PER_S, Daemon, LiveTank};
 
 /// The identification that a file of the campaign holds.
@@ -36,6 +37,60 @@ fn a_decay_is_identified_as_it_ends_and_again_from_its_raw_bytes_to_the_bit() {
     let replayed = rolltank(tank.path(), &["identify", ".", "--json"]);
     assert_eq!(replayed.exit, 0, "{}", replayed.err);
     assert_eq!(replayed.out, live, "{said}");
+}
+
+#[test]
+fn what_a_decay_says_is_told_before_its_end_is_known_and_replaced_by_what_it_says_then() {
+    let tank = LiveTank::at_speed(4.0);
+    let mut daemon = Daemon::start(&tank, &[]);
+    let address = daemon.address();
+    let [numbers, page] = ["results/provisional.json", "results/run-provisional.html"];
+    let told = || tank.text(numbers).contains("under way") && !tank.text(page).is_empty();
+    daemon.wait_until("something provisional is told", told);
+    let (so_far, shown) = (identification(&tank.text(numbers)), tank.text(page));
+    let state = get(&address, "/status", &[]).body;
+    let served = get(&address, "/results/run-provisional.html", &[]);
+    assert!(!daemon.said().contains("run found"), "its end was known: {}", daemon.said());
+    assert_eq!(so_far["schema"], "rolltank.provisional/1");
+    let run = &so_far["identification"]["runs"][0];
+    assert_eq!((&run["id"], &run["kind"]), (&"provisional".into(), &"decay".into()), "{run}");
+    assert!(run["b1_per_s"]["mean"].as_f64().is_some_and(|b1| b1 > 0.1), "{run}");
+    assert!(shown.contains("Provisional: the run is still under way"), "the page says so");
+    assert!(state.contains("\"free decay, Fr 0.000,"), "{state}");
+    assert!(served.status == 200 && served.body.contains("Provisional"), "{served:?}");
+
+    daemon.wait_for("first_after_s=", 1);
+    let results = || tank.text("results/identification.json");
+    daemon.wait_until("the results hold it", || results().contains("start_s"));
+    // Its own report is there, and what was told before is not, or is of the next one.
+    let [begun_s, ends_s] = ["start_s", "end_s"].map(|key| run[key].as_f64().expect(key));
+    let of_it = |text: &str| {
+        let told: serde_json::Value = serde_json::from_str(text).unwrap_or_default();
+        told["identification"]["runs"][0]["start_s"].as_f64().is_some_and(|s| s < begun_s + 10.0)
+    };
+    assert!(!of_it(&tank.text(numbers)), "{}", tank.text(numbers));
+    let found = identification(&results());
+    let last = &found["runs"][0];
+    assert_ne!(last["id"], "provisional");
+    assert!((last["start_s"].as_f64().expect("a start") - begun_s).abs() < 1.0, "{last}");
+    assert!(last["end_s"].as_f64().expect("an end") > ends_s, "{last}");
+
+    let (status, said) = daemon.terminate();
+    assert_eq!(status.code(), Some(0), "{said}");
+    assert!(tank.text(numbers).is_empty() && tank.text(page).is_empty(), "nothing is left of it");
+    // Sooner than the end of the first run was known, some report held it.
+    let number = |key: &str| -> f64 {
+        let after =
+            said.split(&format!(" {key}=")).nth(1).and_then(|s| s.split_whitespace().next());
+        after.and_then(|text| text.parse().ok()).unwrap_or_else(|| panic!("{key}: {said}"))
+    };
+    let [held_s, known_s] = ["first_after_s", "known_after_s"].map(number);
+    println!(
+        "a report held the run {held_s:.2} s after its last sample, known over {known_s:.2} s"
+    );
+    assert!(held_s < 0.8 * known_s, "{held_s} and {known_s}");
+    let replayed = rolltank(tank.path(), &["identify", ".", "--json"]);
+    assert_eq!(replayed.out, tank.text("results/identification.json"), "{said}");
 }
 
 #[test]

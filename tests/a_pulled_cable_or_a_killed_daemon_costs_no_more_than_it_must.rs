@@ -32,14 +32,6 @@ fn stops(records: &[Record]) -> Vec<&RunStop> {
     stops.collect()
 }
 
-/// CPU time of a process [s], all threads.
-fn cpu_s(id: u32) -> f64 {
-    let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).expect("Linux tells it");
-    let after_name = stat.rsplit(')').next().unwrap_or_default();
-    let ticks = after_name.split_whitespace().skip(11).take(2);
-    ticks.map(|ticks| ticks.parse::<f64>().expect("a count")).sum::<f64>() / 100.0
-}
-
 #[test]
 #[expect(clippy::disallowed_methods, reason = "how fast a loss is told is what it is about")]
 fn a_cable_pulled_during_a_decay_ends_the_run_there_and_one_put_back_is_taken_up_again() {
@@ -55,9 +47,9 @@ fn a_cable_pulled_during_a_decay_ends_the_run_there_and_one_put_back_is_taken_up
     daemon.wait_for("latency_s=", 1);
     tank.port(1).unplug();
     std::thread::sleep(Duration::from_millis(500));
-    let before_s = cpu_s(daemon.id());
+    let before_s = daemon.cpu_s();
     std::thread::sleep(Duration::from_secs(5));
-    let share = (cpu_s(daemon.id()) - before_s) / 5.0;
+    let share = (daemon.cpu_s() - before_s) / 5.0;
     let put_back = Instant::now();
     tank.port(0).replug();
     daemon.wait_for("linked", 3);

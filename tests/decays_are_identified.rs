@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 use rolltank::inverse::identification::{Identification, Method};
 use rolltank::inverse::{Setting, identify};
-use rolltank::run::{Run, RunEnd, RunKind, Series};
+use rolltank::run::{Run, RunEnd, RunKind, Series, Timing};
 
 /// A decay `phi'' + b1 phi' + b2 phi'|phi'| + b3 phi'^3 + w^2 (phi + k3 phi^3) = 0`.
 #[derive(Clone, Copy)]
@@ -63,6 +63,7 @@ fn decay(time_s: Vec<f64>, value: Vec<f64>) -> Run {
         drive: Series::default(),
         still: None,
         excitation_rad_s: None,
+        timing: Timing::default(),
     }
 }
 
@@ -238,6 +239,7 @@ proptest! {
             kind: RunKind::Forced,
             drive: Series { time_s: time_s.clone(), value: moment.collect() },
             excitation_rad_s: repeats.then_some(5.0),
+            timing: Timing::default(),
             ..decay(time_s.clone(), roll.collect())
         };
         match identify(&run, &SETTING) {

@@ -8,7 +8,7 @@ use rolltank::inverse::decay::fit::FREQUENCY;
 use rolltank::inverse::decay::posterior::DecayPosterior;
 use rolltank::inverse::decay::{moment, solve};
 use rolltank::inverse::mixture;
-use rolltank::run::{Run, RunEnd, RunKind, Series};
+use rolltank::run::{Run, RunEnd, RunKind, Series, Timing};
 
 const N_DRAWS: usize = 1000;
 
@@ -42,6 +42,7 @@ fn run(hidden: impl Fn(f64, f64) -> f64) -> Run {
         drive: Series::default(),
         still: None,
         excitation_rad_s: None,
+        timing: Timing::default(),
     }
 }
 

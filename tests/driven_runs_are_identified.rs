@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rolltank::inverse::identification::{Identification, Method};
 use rolltank::inverse::{Setting, identify};
 use rolltank::roll::exciting_moment::{Arm, Exciter};
-use rolltank::run::{Run, RunEnd, RunKind, Series, Still};
+use rolltank::run::{Run, RunEnd, RunKind, Series, Still, Timing};
 use rolltank::tank::{SimulatedPass, TrueRun};
 
 use super::run_finding_scene::{LIMITS, ON_THE_ROD, Scene, find};
@@ -53,6 +53,7 @@ fn whole(pass: &SimulatedPass) -> Run {
         }),
         roll,
         excitation_rad_s: None,
+        timing: Timing::default(),
     }
 }
 

@@ -3,9 +3,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
-use rolltank::inverse::identification::Method;
+use rolltank::inverse::identification::{Identification, Method};
 use rolltank::inverse::{Setting, identify};
-use rolltank::run::{Run, RunEnd, RunKind, Series};
+use rolltank::run::{Run, RunEnd, RunKind, Series, Timing};
 
 const INERTIA_KG_M2: f64 = 1.675;
 const RESTORING_N_M: f64 = 79.85;
@@ -108,6 +108,7 @@ fn run(roll: &[f64], moment: &[f64], time_s: &[f64], rng: &mut ChaCha8Rng) -> Ru
         drive: series(noisy(moment, MOMENT_NOISE_N_M)),
         still: None,
         excitation_rad_s: None,
+        timing: Timing::default(),
     }
 }
 
@@ -129,6 +130,43 @@ fn drawn(course: Course, is_imposed: bool, seed: u64) -> (Run, Damping) {
     let simulate = if is_imposed { imposed } else { answered };
     let (roll, moment) = simulate(&sines, law, &time_s);
     (run(&roll, &moment, &time_s, &mut rng), law)
+}
+
+/// By how much a moment is stamped late [s].
+const LATE_S: f64 = 1e-4;
+
+#[test]
+fn a_moment_that_is_stamped_late_moves_the_damping_as_its_skew_says() {
+    let courses = [(Course::Steady, Some(6.2)), (Course::Swept, None), (Course::Irregular, None)];
+    for (course, excitation_rad_s) in courses {
+        let (run, _) = drawn(course, true, 7);
+        let run = Run { excitation_rad_s, ..run };
+        let timing =
+            Timing { roll_bound_s: Some(0.0), drive_bound_s: Some(3e-3), is_common: false };
+        let untold = identify(&run, &SETTING).expect("the run can be identified");
+        assert!(untold.skew.is_none() && untold.remarks.iter().any(|r| r.contains("no bound")));
+        let told = identify(&Run { timing, ..run.clone() }, &SETTING).expect("it can");
+        let skew = told.skew.expect("its bounds are stated");
+        let mut late = run.clone();
+        late.drive.time_s.iter_mut().for_each(|time_s| *time_s += LATE_S);
+        let late = identify(&late, &SETTING).expect("it can still be identified");
+        let five = |of: &Identification| {
+            let all = &of.equivalent_damping;
+            all.iter().find(|at| (at.amplitude_deg - 5.0).abs() < 0.1).unwrap().fitted_per_s
+        };
+        // Where the equivalent damping was taken, as the told numbers themselves say.
+        let law = told.damping;
+        let weight = (five(&told).mean - law.b1_per_s.mean) / law.b3_s.mean;
+        let skewed = skew.damping_sd_per_s(weight);
+        let (moved, promised) =
+            (five(&late).mean - five(&untold).mean, skewed / skew.sd_s * LATE_S);
+        println!("{course:?}: {moved:.6}, promised {promised:.6} 1/s");
+        assert!((moved.abs() / promised - 1.0).abs() < 0.1, "{course:?}: {moved} {promised}");
+        let wider = (five(&told).sd.powi(2) - five(&untold).sd.powi(2)).sqrt();
+        assert!((wider - skewed).abs() < 0.05 * skewed, "{course:?}: {wider} and {skewed}");
+        let width = |of: &Identification| of.moment.sd_per_s2.iter().sum::<f64>();
+        assert!(width(&told) > 1.02 * width(&untold), "{course:?}: the band of the moment");
+    }
 }
 
 #[test]

@@ -1,8 +1,14 @@
 //! `devices`, `check`, `zero` and `calibrate` at instruments on real ports.
 
+use std::io::{BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
+use std::sync::atomic::Ordering;
+
+use devices::Quantity;
+use devices::channel::{Calibration, Curve};
 
 use super::campaign_folder::rolltank;
+use super::http::get;
 use super::live_tank::{CAMPAIGN, Daemon, LiveTank};
 
 /// Runs a command to whom somebody enters lines: its exit code and what it said on either stream.
@@ -16,7 +22,7 @@ fn entered(tank: &LiveTank, arguments: &[&str], lines: &str) -> (Option<i32>, St
         .spawn()
         .expect("the program was built");
     // Who has given up does not read on.
-    std::io::Write::write_all(&mut child.stdin.take().expect("it is piped"), lines.as_bytes()).ok();
+    Write::write_all(&mut child.stdin.take().expect("it is piped"), lines.as_bytes()).ok();
     let ended = child.wait_with_output().expect("it is our child");
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     (ended.status.code(), text(&ended.stdout), text(&ended.stderr))
@@ -126,4 +132,71 @@ fn a_zero_and_a_gain_are_taken_live_and_stand_in_the_next_recording() {
     assert_eq!(by[0].0, "roll");
     assert_eq!(by[0].1, "A. Nilsson");
     assert!(by[0].2.ends_with("UTC"), "{by:?}");
+}
+
+#[test]
+fn a_whole_gain_is_taken_through_the_page_of_a_running_daemon() {
+    let tank = LiveTank::with_a_cell(4.0);
+    let mut daemon = Daemon::start(&tank, &[]);
+    daemon.wait_for("linked", 2);
+    let address = daemon.address();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_rolltank"))
+        .args(["calibrate", ".", "--channel", "force", "--by", "B. Olsen"])
+        .args(["--note", "weights of class M1", "--page", &address])
+        .current_dir(tank.path())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the program was built");
+    let (mut enter, told) = (child.stdin.take().unwrap(), child.stdout.take().unwrap());
+    let mut told = BufReader::new(told).lines();
+    // 102 counts of nothing and 200 a newton; each load is on the cell before it is entered.
+    let counts = |load_n: i64| 102 + 200 * load_n;
+    for load_n in [0, 10, 25, -5] {
+        tank.load_counts.store(counts(load_n), Ordering::Relaxed);
+        writeln!(enter, "{load_n}").expect("it listens");
+        let line = told.next().expect("a line for each load").expect("text");
+        assert!(
+            line.starts_with(&format!("load {load_n} N: raw {}", counts(load_n) / 100)),
+            "{line}"
+        );
+    }
+    writeln!(enter).expect("it listens");
+    let last: Vec<String> = told.map(|line| line.expect("text")).collect();
+    assert!(child.wait().expect("it is our child").success(), "{last:?}");
+    assert!(last[0].starts_with("force of cell: zero 10"), "{last:?}");
+    assert!(last[1].contains("systemctl reload"), "{last:?}");
+
+    tank.load_counts.store(counts(12), Ordering::Relaxed);
+    daemon.signal("-HUP");
+    daemon.wait_for("linked", 4);
+    let force = |status: &str| -> Option<f64> {
+        let status: serde_json::Value = serde_json::from_str(status).ok()?;
+        status["devices"][1]["channels"][0]["value"].as_f64()
+    };
+    let reads =
+        || force(&get(&address, "/status", &[]).body).is_some_and(|n| (n - 12.0).abs() < 0.1);
+    daemon.wait_until("12 N are read as 12 N", reads);
+    let (status, said) = daemon.terminate();
+    assert_eq!(status.code(), Some(0), "{said}");
+    let files = tank.files("live", ".mcap");
+    assert_eq!(files.len(), 2, "{said}");
+    let mut recorded = replay::Recorded::open(&files[1]).expect("it is whole");
+    let (mut taken, mut forces) = (None, Vec::new());
+    while let Some(record) = recorded.next_record().expect("it can be read") {
+        match record {
+            replay::Record::Calibration(of) if of.channel == "force" => taken = Some(of),
+            replay::Record::Sample(of) if of.quantity == Quantity::Force => forces.push(of.value),
+            _ => {}
+        }
+    }
+    let taken = taken.expect("the recording carries it");
+    assert!(taken.by == "B. Olsen" && taken.taken.ends_with("UTC"), "{taken:?}");
+    let curve: Calibration = toml::from_str(&taken.definition).expect("TOML");
+    assert_eq!(curve.note, "weights of class M1");
+    assert!((curve.zero_raw - 102.0).abs() < 1.0, "{curve:?}");
+    let Curve::Gain(gain) = curve.curve else { panic!("{curve:?}") };
+    assert!((200.0 * gain - 1.0).abs() < 1e-3, "{gain}");
+    let mean = forces.iter().sum::<f64>() / forces.len() as f64;
+    assert!((mean - 12.0).abs() < 0.05, "{mean} N of {} samples", forces.len());
 }

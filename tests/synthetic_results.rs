@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::synthetic_roll::{STEP_S, Truth};
-use devices::{Quantity, channel::Counts};
+use devices::{Quantity, channel::Brought, channel::Counts};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use replay::Columns;
@@ -16,14 +16,12 @@ use rolltank::inverse::identification::{
 };
 use rolltank::results::{IdentifiedRun, Overview, RejectedStretch, Results, Sampling};
 use rolltank::roll::exciting_moment::{Arm, Exciter};
-use rolltank::run::{Run, RunEnd, RunKind, Series, Still};
+use rolltank::run::{Run, RunEnd, RunKind, Series, Still, Timing};
 
 /// Noise of the roll channel [rad].
 const NOISE_RAD: f64 = 0.000_9;
-
 /// Froude numbers of the campaign [-].
 const FROUDE: [f64; 5] = [0.0, 0.1, 0.2, 0.3, 0.4];
-
 /// What one condition is made of: name, `w` [rad/s], `b0` [1/s], `kappa` [-], `b3` [s].
 const CONDITIONS: [(&str, f64, f64, f64, f64); 2] =
     [("bare hull", 6.905, 0.38, 11.8, 0.14), ("bilge keels", 6.136, 1.24, 11.9, 0.67)];
@@ -168,9 +166,11 @@ fn identified(
             .iter()
             .map(|(_, rate)| -truth.damping(*rate) + 6.0 * normal(random))
             .collect(),
+        skew: None,
         chain: None,
         remarks: Vec::new(),
     };
+    let whole = Brought { quantity: Quantity::Roll, counts: Counts::default(), bound_s: None };
     IdentifiedRun {
         id: format!("pass_{number:02}-1"),
         recording: recording.to_owned(),
@@ -178,7 +178,7 @@ fn identified(
         speed_m_s: froude * 4.952,
         froude,
         sampling: Sampling::of(&run),
-        counts: vec![(Quantity::Roll, Counts::default())],
+        brought: vec![whole],
         run,
         identification,
     }
@@ -201,6 +201,7 @@ fn found(truth: &Truth, froude: f64, roll: Series, moment_n_m: &[f64]) -> Run {
         roll,
         still: Some(still),
         excitation_rad_s: forced.then_some(truth.excitation_rad_s),
+        timing: Timing::default(),
     }
 }
 

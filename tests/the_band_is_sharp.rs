@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 use rolltank::inverse::identification::Method;
 use rolltank::inverse::{Setting, identify};
-use rolltank::run::{Run, RunEnd, RunKind, Series};
+use rolltank::run::{Run, RunEnd, RunKind, Series, Timing};
 
 const SETTING: Setting =
     Setting { restoring_n_m_per_rad: 79.85, exciter: None, method: Method::Exact, seed: 1 };
@@ -94,6 +94,7 @@ fn the_band_at_five_degrees_is_hardly_wider_than_that_of_a_fit_that_knows_the_la
                 drive: Series::default(),
                 still: None,
                 excitation_rad_s: None,
+                timing: Timing::default(),
             };
             let found = identify(&run, &SETTING).expect("a plain decay");
             let five = found

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use devices::Quantity;
-use devices::channel::Counts;
+use devices::channel::{Brought, Counts};
 use rolltank::inverse::estimate::Estimate;
 use rolltank::report::{self, ReportError};
 use rolltank::results::Results;
@@ -105,9 +105,10 @@ fn a_run_page_tells_what_each_instrument_lost_and_says_so_when_that_is_nothing()
     let mut results = synthetic_results::results();
     let roll = Counts { received: 1993, lost: 5, repeated: 2, over_range: 1, damaged: 4 };
     let speed = Counts { received: 200, ..Counts::default() };
-    results.runs[0].counts = vec![(Quantity::Roll, roll), (Quantity::Speed, speed)];
-    results.runs[1].counts = vec![(Quantity::Speed, speed)];
-    results.runs[2].counts = Vec::new();
+    let of = |quantity, counts| Brought { quantity, counts, bound_s: Some(2.5e-4) };
+    results.runs[0].brought = vec![of(Quantity::Roll, roll), of(Quantity::Speed, speed)];
+    results.runs[1].brought = vec![of(Quantity::Speed, speed)];
+    results.runs[2].brought = Vec::new();
     let folder = tempfile::tempdir().expect("a folder for the report");
     report::write_all(&campaign, &results, folder.path()).expect("a report");
     let told = |run: usize| {
@@ -116,7 +117,7 @@ fn a_run_page_tells_what_each_instrument_lost_and_says_so_when_that_is_nothing()
         Some(text(&part.split("</section>").next()?.replace("</td>", " ")))
     };
     let lost = told(0).expect("a part of its own");
-    assert!(lost.contains("roll 1993 5 2 1 4 speed 200 0 0 0 0"), "{lost}");
+    assert!(lost.contains("roll 1993 5 2 1 4 0.25 speed 200 0 0 0 0 0.25"), "{lost}");
     assert!(!lost.contains("Every sample came"), "{lost}");
     assert!(told(1).is_some_and(|told| told.contains("Every sample came")));
     assert_eq!(told(2), None, "nobody counted");

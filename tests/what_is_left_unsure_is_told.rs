@@ -192,7 +192,8 @@ fn the_budget_adds_up_what_is_known_and_names_what_is_not() {
     results.runs = values.map(|damping| run("bare hull", 0.2, damping)).to_vec();
     let untold = &budgets(&campaign, &results)[0];
     assert_eq!(untold.left_out, ["clock", "roll gain", "GM"]);
-    campaign.trueness = Trueness { roll_gain: Some(0.01), clock: Some(0.001), gm: Some(0.02) };
+    campaign.trueness =
+        Trueness { roll_gain: Some(0.01), force_gain: None, clock: Some(0.001), gm: Some(0.02) };
     let told = &budgets(&campaign, &results)[0];
     assert!(told.left_out.is_empty());
     // By hand: mean 0.4, own 0.0040012, s 0.0182574; b1 of the made-up run gives the rest.

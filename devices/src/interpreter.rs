@@ -87,6 +87,7 @@ pub struct Interpreter {
     port: PathBuf,
     channels: Vec<ChannelState>,
     quality: Quality,
+    lag_is_declared: bool,
     stamper: Stamper,
     troubles: Troubles,
     gap_from_s: Option<f64>,
@@ -97,6 +98,7 @@ struct ChannelState {
     channel: Channel,
     counts: Counts,
     last_time_s: f64,
+    last_bound_s: f64,
 }
 
 /// Two samples of one channel are at least so far apart [s], whatever the clock's line does.
@@ -115,17 +117,20 @@ impl Interpreter {
             latency_s,
             age_s: config.pace.age_s,
             lag_s: config.lag.delay_s(),
+            lag_bound_s: config.lag.bound_s(),
         };
         let state = |channel: &Channel| ChannelState {
             channel: channel.clone(),
             counts: Counts::default(),
             last_time_s: f64::NEG_INFINITY,
+            last_bound_s: 0.0,
         };
         Ok(Self {
             device: config.name.clone(),
             port: config.port.clone(),
             channels: config.channels.iter().map(state).collect(),
             quality: Quality::GOOD.with_if(config.lag.is_flagged(), Quality::LAGGED),
+            lag_is_declared: config.lag.is_declared(),
             stamper: Stamper::new(settings),
             troubles: Troubles::new(config, protocol.fields().len()),
             gap_from_s: None,
@@ -144,6 +149,7 @@ impl Interpreter {
         begun.map(|state| Counted {
             quantity: state.channel.quantity,
             time_s: state.last_time_s,
+            bound_s: self.lag_is_declared.then_some(state.last_bound_s),
             counts: state.counts,
         })
     }
@@ -298,7 +304,7 @@ impl ChannelState {
         let (value, quality) = self.channel.value(reading.raw, reading.quality.with(quality));
         // The clock's line may move back a little; a channel's time does not.
         let time_s = stamp.time_s.max(self.last_time_s + STEP_MIN_S);
-        self.last_time_s = time_s;
+        (self.last_time_s, self.last_bound_s) = (time_s, stamp.bound_s);
         self.counts.received += 1;
         self.counts.over_range += u64::from(quality.has(Quality::OVER_RANGE));
         Measured {

@@ -21,8 +21,9 @@ pub(crate) struct StampSettings {
     pub(crate) latency_s: f64,
     /// A fetched reading may be so old [s].
     pub(crate) age_s: f64,
-    /// The filter makes readings late by so much [s].
+    /// The filter makes readings late by so much [s], give or take so much.
     pub(crate) lag_s: f64,
+    pub(crate) lag_bound_s: f64,
 }
 
 /// Keeps a device's counters and clock.
@@ -114,7 +115,7 @@ impl Stamper {
             Taken::Between(from_ns, to_ns) => middle(from_ns, to_ns, self.settings.age_s),
         };
         stamp.time_s = time_s - self.settings.lag_s;
-        stamp.bound_s = bound_s;
+        stamp.bound_s = bound_s + self.settings.lag_bound_s;
         stamp
     }
 
@@ -179,8 +180,14 @@ mod tests {
     use super::*;
 
     fn stamper(ticks: DeviceTicks) -> Stamper {
-        let settings =
-            StampSettings { ticks, sends_hz: None, latency_s: 0.016, age_s: 0.01, lag_s: 0.002 };
+        let settings = StampSettings {
+            ticks,
+            sends_hz: None,
+            latency_s: 0.016,
+            age_s: 0.01,
+            lag_s: 0.002,
+            lag_bound_s: 0.0,
+        };
         Stamper::new(settings)
     }
 

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use devices::channel::Counts;
-use devices::{Quantity, Sample};
+use devices::Sample;
+use devices::channel::{Brought, Counts};
 use serde::{Deserialize, Serialize};
 
 /// One thing that happened in the tank; its time is on the recording's own time base.
@@ -169,7 +169,7 @@ pub struct RunStop {
 }
 
 /// Samples of one channel, good and bad.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ChannelCounts {
     /// Name of the channel.
     pub channel: String,
@@ -183,14 +183,24 @@ pub struct ChannelCounts {
     pub over_range: u64,
     /// Samples whose check failed.
     pub damaged: u64,
+    /// Their times are at most so far off [s]; none where that is not known.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub clock_bound_s: Option<f64>,
 }
 
 impl ChannelCounts {
-    /// What was counted on a channel, under its name.
-    pub fn of(quantity: Quantity, counts: Counts) -> Self {
-        let Counts { received, lost, repeated, over_range, damaged } = counts;
-        let channel = quantity.name().to_owned();
-        Self { channel, samples: received, lost, repeated, over_range, damaged }
+    /// What a channel brought, under its name.
+    pub fn of(brought: &Brought) -> Self {
+        let Counts { received, lost, repeated, over_range, damaged } = brought.counts;
+        Self {
+            channel: brought.quantity.name().to_owned(),
+            samples: received,
+            lost,
+            repeated,
+            over_range,
+            damaged,
+            clock_bound_s: brought.bound_s,
+        }
     }
 }
 

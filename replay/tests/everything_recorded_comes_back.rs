@@ -59,6 +59,7 @@ pub(crate) fn every_kind() -> Vec<Record> {
         repeated: 2,
         over_range: 3,
         damaged: 4,
+        clock_bound_s: Some(2.5e-4),
     };
     vec![
         device(),

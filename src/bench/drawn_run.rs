@@ -3,7 +3,7 @@
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-use crate::run::{Run, RunEnd, RunKind, Series};
+use crate::run::{Run, RunEnd, RunKind, Series, Timing};
 use crate::tank::FreeRoll;
 
 /// What the decays of one campaign have in common.
@@ -123,6 +123,7 @@ impl DrawnRun {
             drive: Series::default(),
             still: None,
             excitation_rad_s: None,
+            timing: Timing::default(),
         };
         Self { froude, truth, amplitude_rad, run, half_steps }
     }

@@ -18,7 +18,7 @@ use crate::inverse::paper::{
 use crate::inverse::state_space::posterior::Quadrature;
 use crate::inverse::{Setting, identify};
 use crate::pipeline::{self, Options};
-use crate::run::{Run, RunEnd, RunKind, Series};
+use crate::run::{Run, RunEnd, RunKind, Series, Timing};
 use crate::tank::{Action, FileFormat, FreeRoll, Scenario, write_campaign};
 
 /// One figure with what it is.
@@ -68,6 +68,7 @@ pub fn decay(n_samples: usize, per_period: f64) -> Run {
         drive: Series::default(),
         still: None,
         excitation_rad_s: None,
+        timing: Timing::default(),
     }
 }
 

@@ -98,6 +98,8 @@ pub struct Plan {
 pub struct Trueness {
     /// Of the gain of the roll channel.
     pub roll_gain: Option<f64>,
+    /// Of the gain of the force or moment channel, arm included.
+    pub force_gain: Option<f64>,
     /// Of the rate of the recorder's clock.
     pub clock: Option<f64>,
     /// Of the metacentric height.

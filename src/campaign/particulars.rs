@@ -16,8 +16,12 @@ const GRAVITY_M_S2: [f64; 2] = [9.75, 9.85];
 pub(super) fn trueness(section: Option<&Section<'_>>) -> Trueness {
     let Some(section) = section else { return Trueness::default() };
     let share = |key| section.number(key, &SHARE);
-    let trueness =
-        Trueness { roll_gain: share("roll_gain"), clock: share("clock"), gm: share("gm") };
+    let trueness = Trueness {
+        roll_gain: share("roll_gain"),
+        force_gain: share("force_gain"),
+        clock: share("clock"),
+        gm: share("gm"),
+    };
     section.close();
     trueness
 }

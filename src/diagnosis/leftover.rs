@@ -43,8 +43,8 @@ const SURE_LINE: f64 = 10.0;
 
 /// Share by which the noise in the band of the roll may differ from that above it [-].
 const COLOUR: f64 = 0.2;
-/// Slow error of a serial instrument's clock [s]: what is allowed behind an adapter that delivers
-/// every 16 ms.
+/// Slow error of an instrument's clock that nobody has stated [s]: what is allowed behind an
+/// adapter that delivers every 16 ms.
 const CLOCK_S: f64 = 1e-3;
 
 impl Leftover {
@@ -67,9 +67,12 @@ pub(super) fn of(run: &Observation, residual: &[f64]) -> Vec<Leftover> {
         ("roll", &residual[..n_roll], &run.roll_time_s, &run.roll_rad),
         ("moment", &residual[n_roll..], &run.moment_time_s, &run.moment_n_m),
     ];
-    for (channel, left, times, values) in channels {
+    for ((channel, left, times, values), clock_s) in channels.into_iter().zip(run.clock_bounds_s) {
         if left.len() >= 64 {
-            all.push(channel_leftover(run, channel, left, times, values));
+            let clock_s = clock_s.unwrap_or(CLOCK_S);
+            let leftover = channel_leftover(run, channel, left, times, values);
+            let clock_share = (run.at.rolling_rad_s * clock_s).powi(2);
+            all.push(Leftover { clock_share, ..leftover });
         }
     }
     all
@@ -122,7 +125,7 @@ fn channel_leftover(
         channel,
         rms,
         share: ((sum - n_band) * mean_noise / n as f64 * 2.0 / variance.max(1e-30)).max(0.0),
-        clock_share: (run.at.rolling_rad_s * CLOCK_S).powi(2),
+        clock_share: 0.0,
         band_z: (sum - n_band) / sd,
         line_log_odds,
         frequency_rad_s: (strongest + 1) as f64 * bin_rad_s,

@@ -33,6 +33,9 @@ pub struct Observation {
     pub moment_n_m: Vec<f64>,
     /// Noise of one value of each channel, from neighbouring values [rad, N m].
     pub rough_noise: [f64; 2],
+    /// How far off the times of the roll may be, and the time between it and the moment, where that
+    /// is stated [s].
+    pub clock_bounds_s: [Option<f64>; 2],
     /// What the fit of this run starts from: initial roll and rate, or the imposed course; then
     /// the run's own zero offset.
     pub start: Vec<f64>,
@@ -160,6 +163,7 @@ impl Observation {
             moment_time_s: moment.time_s,
             moment_n_m: moment.value,
             rough_noise: [noise_rad, moment_noise],
+            clock_bounds_s: [run.run.timing.roll_bound_s, run.run.timing.skew_bound_s()],
             start,
             base: Base {
                 natural_rad_s: w,

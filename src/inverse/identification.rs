@@ -45,6 +45,9 @@ pub struct Identification {
     pub resimulation: Resimulation,
     /// Total inertia `I + dI` [kg m2]: from (4.5) in a forced run, else none.
     pub inertia_kg_m2: Option<Estimate>,
+    /// What the time between roll and moment leaves unsure; none for a decay, and where nothing is
+    /// stated of that time.
+    pub skew: Option<Skew>,
     /// What only a forced run has.
     pub forced: Option<ForcedResponse>,
     /// Unregularised least-squares solution of (2.5), one value per entry of `moment` (Fig. 9).
@@ -203,6 +206,25 @@ pub struct ForcedResponse {
     pub moment_time_s: Vec<f64>,
     /// Exciting moment [N m] at `moment_time_s`.
     pub moment_n_m: Vec<f64>,
+}
+
+/// What an error of the time between roll and moment does to the damping of a forced run; the
+/// estimates hold it already.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Skew {
+    /// Standard uncertainty of that time [s].
+    pub sd_s: f64,
+    /// Change of `b1` per second [1/s2].
+    pub b1_by_per_s2: f64,
+    /// Change of `b3` per second [-].
+    pub b3_by: f64,
+}
+
+impl Skew {
+    /// Standard uncertainty that it leaves in `b1 + weight b3` [1/s].
+    pub fn damping_sd_per_s(&self, weight: f64) -> f64 {
+        (self.b1_by_per_s2 + weight * self.b3_by).abs() * self.sd_s
+    }
 }
 
 /// What a Markov chain says about itself (Fig. 11).

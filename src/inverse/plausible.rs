@@ -121,7 +121,7 @@ const WRONG_UNIT: &str = "hint: the units of force and roll in [columns], moment
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::{RunEnd, RunKind, Series};
+    use crate::run::{RunEnd, RunKind, Series, Timing};
 
     fn forced(missing: std::ops::Range<usize>) -> Run {
         let kept = (0..2000).filter(|k| !missing.contains(k));
@@ -137,6 +137,7 @@ mod tests {
             drive: Series { time_s, value },
             still: None,
             excitation_rad_s: Some(5.0),
+            timing: Timing::default(),
         }
     }
 

@@ -3,8 +3,9 @@
 //! ```text
 //! port threads -> Event -> one loop -> recorder            (keeping)
 //!                           |    \---> run finder -> identifying threads -> reporter (reporting)
-//!                           |                                              |
-//!                           |                                              \---> (diagnosing)
+//!                           |              |                               |
+//!                           |              |                               \---> (diagnosing)
+//!                           |              \---> the run so far (provisional)
 //!                           \---> board -> page
 //! ```
 //!
@@ -18,6 +19,7 @@ mod diagnosing;
 mod error;
 mod event;
 mod keeping;
+mod provisional;
 mod reporting;
 mod session;
 mod showing;

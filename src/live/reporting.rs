@@ -9,9 +9,11 @@ use tokio::sync::mpsc::Sender;
 
 use super::diagnosing::{Diagnosed, Diagnoser};
 use super::event::Event;
+use super::provisional::{Provisional, Told};
 use super::showing::show;
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
+use crate::inverse::estimate::Estimate;
 use crate::page::Board;
 use crate::pipeline::{self, FoundRun, LiveResults, LiveStep};
 use crate::report;
@@ -25,6 +27,8 @@ pub(super) struct Reported {
     pub(super) outcome: Result<Identified, String>,
     /// When its page was on disk [ns].
     pub(super) at_ns: u64,
+    /// What was told of it before its end was known, in order.
+    pub(super) told: Vec<Told>,
 }
 
 /// A run that was identified.
@@ -35,6 +39,8 @@ pub(super) struct Identified {
     pub(super) document: String,
     /// One line about it.
     pub(super) summary: String,
+    /// Damping at the amplitude at which runs are compared.
+    pub(super) damping_per_s: Option<Estimate>,
 }
 
 /// Writes reports until the recording has ended.
@@ -49,6 +55,8 @@ pub(super) struct Reporter<'a> {
     pub(super) clock: Arc<dyn Clock>,
     /// What finds out what the simulation gets wrong.
     pub(super) diagnoser: Diagnoser,
+    /// What the run under way says, until its final report is there.
+    pub(super) provisional: Provisional,
     /// Where results are shown.
     pub(super) board: &'a Board,
     /// The loop.
@@ -69,7 +77,9 @@ impl Reporter<'_> {
                     None
                 }
                 LiveStep::Refused { found, reason } => {
-                    Some(Reported { found, outcome: Err(reason), at_ns: self.clock.now_ns() })
+                    let at_ns = self.clock.now_ns();
+                    let told = self.provisional.replaced(&found);
+                    Some(Reported { found, outcome: Err(reason), at_ns, told })
                 }
                 LiveStep::Identified { found, run, overview } => {
                     if let Err(error) =
@@ -78,11 +88,12 @@ impl Reporter<'_> {
                         tracing::error!(run = run.id, "page not written: {error}");
                     }
                     let at_ns = self.clock.now_ns();
+                    let told = self.provisional.replaced(&found);
                     let outcome = Ok(identified(self.campaign, run));
                     self.diagnoser.hear(run, self.campaign);
                     self.diagnoser.ask();
                     pipeline::forget_histories(run);
-                    Some(Reported { found, outcome, at_ns })
+                    Some(Reported { found, outcome, at_ns, told })
                 }
             };
             known = known.or_else(|| self.earlier.try_recv().ok().flatten());
@@ -96,6 +107,7 @@ impl Reporter<'_> {
                 write(self.campaign, &results, self.diagnoser.newest().as_deref(), &dir);
             }
         }
+        self.provisional.withdraw();
         self.events.blocking_send(Event::AllReported).ok();
         let earlier = known.or_else(|| self.earlier.recv().ok().flatten())?;
         // The next recording does not wait for a diagnosis; only the daemon's end does.
@@ -130,6 +142,7 @@ fn identified(campaign: &Campaign, run: &IdentifiedRun) -> Identified {
     let b1 = &run.identification.damping.b1_per_s;
     Identified {
         id: run.id.clone(),
+        damping_per_s: run.at_comparison().map(|at| at.fitted_per_s),
         document: report::identification_json(campaign, &alone),
         summary: format!(
             "Fr {:.3}, b1 = {:.4} 1/s ({:.4} to {:.4})",

@@ -13,6 +13,7 @@ use super::diagnosing::Diagnoser;
 use super::error::LiveError;
 use super::event::EVENTS_WAITING;
 use super::keeping::{Keeper, fresh_name};
+use super::provisional;
 use super::reporting::Reporter;
 use super::showing::show;
 use super::supervisor::Supervisor;
@@ -104,6 +105,8 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
             knows_earlier.store(true, Ordering::Release);
         });
         let (runs, results) = pipeline::live(scope, campaign, &options);
+        let own_clock = Arc::clone(clock) as Arc<dyn Clock>;
+        let (offers, provisional) = provisional::start(scope, campaign, board, own_clock);
         let mut under_way = UnderWay {
             campaign,
             clock,
@@ -111,6 +114,7 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
             supervisor,
             keeper,
             runs: Some(runs),
+            offers,
             is_ending,
             rotate_s,
             knows_earlier,
@@ -123,6 +127,7 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
             earlier: earlier_told,
             clock: Arc::clone(clock) as Arc<dyn Clock>,
             diagnoser,
+            provisional,
             board,
             events: sender,
         };

@@ -12,7 +12,7 @@ use crate::report;
 use crate::results::Results;
 
 /// Files of a report that a page may ask for, beside those of the runs.
-const FILES: [&str; 11] = [
+const FILES: [&str; 13] = [
     "index.html",
     "diagnosis.html",
     "diagnosis.json",
@@ -24,6 +24,9 @@ const FILES: [&str; 11] = [
     "equivalent_damping.csv",
     "rejected.csv",
     "froude_law.csv",
+    // While a run is under way.
+    "run-provisional.html",
+    "provisional.json",
 ];
 
 /// Shows results that nobody has judged yet, as they are by what people have judged; returns those.

@@ -16,6 +16,7 @@ use super::attached::{Attached, Taken};
 use super::error::{LiveError, no_devices};
 use super::event::Event;
 use super::keeping::Keeper;
+use super::provisional::Offers;
 use super::supervisor::Supervisor;
 use crate::campaign::{self, Campaign, FILE_NAME};
 use crate::page::status::RecordedStatus;
@@ -70,6 +71,8 @@ pub(super) struct UnderWay<'a> {
     pub(super) keeper: Keeper,
     /// Where samples go, until the recording has ended.
     pub(super) runs: Option<LiveRuns<'a>>,
+    /// Where the run under way is offered before its end is known.
+    pub(super) offers: Offers,
     /// Told to whoever works for this recording when it ends.
     pub(super) is_ending: &'a AtomicBool,
     /// Age [s] at which the recording gives way to the next when the model is at rest.
@@ -262,6 +265,15 @@ impl UnderWay<'_> {
             self.state.moved_ns = at_ns;
         }
         self.take_found(at_ns);
+        self.offer(samples, at_ns);
+    }
+
+    /// Offers the run under way by the newest sample of its roll.
+    fn offer(&mut self, samples: &[Sample], at_ns: u64) {
+        let rolls = samples.iter().rev().find(|sample| sample.quantity == Quantity::Roll);
+        if let (Some(runs), Some(roll)) = (&self.runs, rolls) {
+            self.offers.offer(roll.time_s, at_ns, || runs.so_far());
+        }
     }
 
     /// Closes the ports, unless they are; the rest follows when their last events were taken.

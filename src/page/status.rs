@@ -27,6 +27,8 @@ pub struct Status {
     pub recorded: RecordedStatus,
     /// Runs and stretches so far, earlier recordings not counted.
     pub runs: RunsStatus,
+    /// What the run under way says so far, in one line.
+    pub provisional: Option<String>,
     /// Whether a new campaign file waits for the model to come to rest.
     pub reload_waits: bool,
     /// What was wrong with the campaign file that was last refused.
@@ -137,22 +139,42 @@ pub struct RunsStatus {
     pub latencies_s: Vec<f64>,
     /// From the last sample of each of these runs to the one by which its end is known [s].
     pub known_after_s: Vec<f64>,
+    /// What was told of each of these runs before its end was known.
+    pub told_before: Vec<ToldBefore>,
+}
+
+/// The provisional reports of a run, seen from its final one.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct ToldBefore {
+    /// From the run's last sample to the first report on disk that holds it [s]: the final one
+    /// where no provisional one did.
+    pub first_after_s: f64,
+    /// By how much that one ended later than the final one [s]; none where it is the final one.
+    pub first_ends_later_s: Option<f64>,
+    /// How far the final damping lies from that one's, in standard deviations of the final one [-].
+    pub first_moved_sd: Option<f64>,
+    /// By how much the last provisional report ended later than the final one [s].
+    pub last_ends_later_s: Option<f64>,
+    /// How far the final damping lies from that one's, likewise [-].
+    pub last_moved_sd: Option<f64>,
 }
 
 /// Latencies that are kept.
 const LATENCIES_KEPT: usize = 1000;
 
 impl RunsStatus {
-    /// One more report, so long after the sample by which the end of its run was known, and that so
-    /// long after the last of the run.
-    pub fn reported(&mut self, latency_s: f64, known_after_s: f64) {
+    /// One more report, so long after the sample by which the end of its run was known, that so
+    /// long after the last of the run, and what was told of it before.
+    pub fn reported(&mut self, latency_s: f64, known_after_s: f64, before: ToldBefore) {
         self.n_identified += 1;
         if self.latencies_s.len() == LATENCIES_KEPT {
             self.latencies_s.remove(0);
             self.known_after_s.remove(0);
+            self.told_before.remove(0);
         }
         self.latencies_s.push(latency_s);
         self.known_after_s.push(known_after_s);
+        self.told_before.push(before);
     }
 }
 

@@ -34,17 +34,32 @@ impl<'a> Asking<'a> {
 
     /// Where the answer for a run will arrive.
     pub(super) fn identify(&mut self, run: Run, drive_is_moment: bool) -> Receiver<Identified> {
+        let setting = self.setting(run.kind, drive_is_moment);
+        self.n_runs += 1;
+        match setting {
+            Ok(setting) => self.workers.identify(run, setting),
+            Err(reason) => Workers::refuse(run, reason),
+        }
+    }
+
+    /// What the identification of the next run must know.
+    ///
+    /// # Errors
+    /// The reason, as a sentence, why there can be none.
+    pub(super) fn setting(
+        &self,
+        kind: RunKind,
+        drive_is_moment: bool,
+    ) -> Result<Setting, &'static str> {
         let Campaign { hull, water, exciter, .. } = self.campaign;
-        let setting = Setting {
+        if kind == RunKind::Forced && !drive_is_moment && exciter.is_none() {
+            return Err(NO_ARM);
+        }
+        Ok(Setting {
             restoring_n_m_per_rad: hull.restoring_n_m_per_rad(water),
             exciter: exciter.filter(|_| !drive_is_moment),
             method: self.options.method,
             seed: self.options.seed.wrapping_add(self.n_runs),
-        };
-        self.n_runs += 1;
-        if run.kind == RunKind::Forced && !drive_is_moment && exciter.is_none() {
-            return Workers::refuse(run, NO_ARM);
-        }
-        self.workers.identify(run, setting)
+        })
     }
 }

@@ -1,7 +1,6 @@
 //! Keeping what the campaign has taught so far, run by run.
 
-use devices::Quantity;
-use devices::channel::Counts;
+use devices::channel::Brought;
 
 use super::judging::judged;
 use super::names;
@@ -35,13 +34,13 @@ impl<'c> Collector<'c> {
         self.results.runs.len()
     }
 
-    /// Keeps a run of a recording with what instruments counted in it; one that could not be
+    /// Keeps a run of a recording with what instruments brought in it; one that could not be
     /// identified becomes a rejection.
     pub(super) fn keep(
         &mut self,
         index: usize,
         identified: Identified,
-        counts: &[(Quantity, Counts)],
+        brought: &[Brought],
     ) -> Option<&mut IdentifiedRun> {
         let recording = &self.campaign.recordings[index];
         let Identified { run, identification, setting } = identified;
@@ -67,7 +66,7 @@ impl<'c> Collector<'c> {
             // The damping of a model towed astern is reported at the size of its speed.
             froude: self.campaign.hull.froude(speed_m_s.abs(), &self.campaign.water),
             sampling: Sampling::of(&run),
-            counts: counts.to_vec(),
+            brought: brought.to_vec(),
             run,
             identification,
         };

@@ -3,17 +3,21 @@
 use std::collections::BTreeMap;
 use std::sync::mpsc::Receiver;
 
-use devices::channel::{Counted, Counts, Tally};
+use devices::channel::{Brought, Counted, Tally};
 use devices::{Quantity, Sample};
 use replay::Note;
 
 use super::Options;
 use super::asking::Asking;
 use super::overview::OverviewBuilder;
+use super::so_far::RunSoFar;
 use super::workers::{Identified, Workers};
 use crate::campaign::{Campaign, Recording};
 use crate::results::Overview;
-use crate::run::{Event, Limits, Rejection, RunEnd, RunFinder, RunKind};
+use crate::run::{Event, Limits, Rejection, RunEnd, RunFinder, RunKind, Timing};
+
+/// Longest time before the end of a rest in which the next run may begin [s], with a margin.
+const AT_REST_S: f64 = 60.0;
 
 /// What a stream tells whoever collects its runs.
 pub(super) enum Heard {
@@ -44,8 +48,8 @@ pub struct FoundRun {
     pub end_s: f64,
     /// Why it ends there.
     pub end: RunEnd,
-    /// What the instruments counted on each channel from its start to its end.
-    pub counts: Vec<(Quantity, Counts)>,
+    /// What the instruments brought on each channel from its start to its end.
+    pub brought: Vec<Brought>,
 }
 
 /// The listener has gone away, so there is nobody to play for.
@@ -94,6 +98,20 @@ impl<'a> Listening<'a> {
         self.finder.is_at_rest()
     }
 
+    /// The run under way as it would be found and asked about if the stream ended now.
+    pub(super) fn so_far(&self) -> Option<RunSoFar> {
+        let mut run = self.finder.so_far()?;
+        run.timing = self.timing(run.start_s, run.end_s);
+        Some(RunSoFar {
+            number: self.n_found + 1,
+            setting: self.asking.setting(run.kind, self.drive_is_moment).ok()?,
+            index: self.index,
+            brought: self.brought(run.start_s, run.end_s),
+            overview: self.overview.so_far(self.recording, Vec::new()),
+            run,
+        })
+    }
+
     /// Takes samples in the order in which they came, and what instruments had counted when so many
     /// of them had come.
     pub(super) fn batch(
@@ -119,8 +137,12 @@ impl<'a> Listening<'a> {
     }
 
     fn count(&mut self, counted: &Counted) {
-        let tally = self.tallies.entry(counted.quantity).or_default();
-        tally.note(counted.time_s, counted.counts);
+        let quantity = counted.quantity;
+        let tally = self.tallies.entry(quantity).or_insert_with(|| Tally::new(quantity));
+        tally.note(counted);
+        if self.finder.is_at_rest() {
+            tally.forget_before(counted.time_s - AT_REST_S);
+        }
     }
 
     /// The stream has ended; `notes` say what was lost of it.
@@ -136,8 +158,9 @@ impl<'a> Listening<'a> {
         for event in std::mem::take(&mut self.events) {
             let index = self.index;
             tell(match event {
-                Event::Run(run) => {
+                Event::Run(mut run) => {
                     self.n_found += 1;
+                    run.timing = self.timing(run.start_s, run.end_s);
                     Heard::Run {
                         index,
                         found: FoundRun {
@@ -146,7 +169,7 @@ impl<'a> Listening<'a> {
                             start_s: run.start_s,
                             end_s: run.end_s,
                             end: run.end,
-                            counts: self.counts(run.start_s, run.end_s),
+                            brought: self.brought(run.start_s, run.end_s),
                         },
                         identified: self.asking.identify(run, self.drive_is_moment),
                         overview: self.overview.so_far(self.recording, Vec::new()),
@@ -158,9 +181,20 @@ impl<'a> Listening<'a> {
         Ok(())
     }
 
-    fn counts(&self, start_s: f64, end_s: f64) -> Vec<(Quantity, Counts)> {
-        let tallies = self.tallies.iter();
-        tallies.map(|(quantity, tally)| (*quantity, tally.between(start_s, end_s))).collect()
+    fn brought(&self, start_s: f64, end_s: f64) -> Vec<Brought> {
+        self.tallies.values().map(|tally| tally.between(start_s, end_s)).collect()
+    }
+
+    fn timing(&self, start_s: f64, end_s: f64) -> Timing {
+        let drive = if self.drive_is_moment { Quantity::Moment } else { Quantity::Force };
+        let tallies = [Quantity::Roll, drive].map(|quantity| self.tallies.get(&quantity));
+        let [roll_bound_s, drive_bound_s] =
+            tallies.map(|tally| tally?.between(start_s, end_s).bound_s);
+        let is_common = match tallies {
+            [Some(roll), Some(drive)] => roll.is_stamped_with(drive, start_s, end_s),
+            _ => false,
+        };
+        Timing { roll_bound_s, drive_bound_s, is_common }
     }
 }
 

@@ -11,6 +11,7 @@ use super::Options;
 use super::collect::{Collector, joined};
 use super::histories;
 use super::listening::{FoundRun, Heard, Listening, Unheard};
+use super::so_far::RunSoFar;
 use super::workers::Workers;
 use crate::campaign::Campaign;
 use crate::results::{IdentifiedRun, Overview, Results};
@@ -106,6 +107,11 @@ impl LiveRuns<'_> {
         self.heard.try_send(Heard::TellAgain).ok();
     }
 
+    /// The run under way as it would be if the recording ended now.
+    pub fn so_far(&self) -> Option<RunSoFar> {
+        self.listening.so_far()
+    }
+
     /// Whether neither a run nor any motion is under way.
     pub fn is_at_rest(&self) -> bool {
         self.listening.is_at_rest()
@@ -148,7 +154,7 @@ impl LiveResults<'_> {
                 // A worker that panicked has no answer, and the scope passes its panic on.
                 let identified = identified.recv().ok()?;
                 let reason = identified.identification.as_ref().err().cloned();
-                match self.collector.keep(index, identified, &found.counts) {
+                match self.collector.keep(index, identified, &found.brought) {
                     Some(run) => LiveStep::Identified { found, run, overview },
                     None => LiveStep::Refused { found, reason: reason.unwrap_or_default() },
                 }

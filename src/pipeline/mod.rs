@@ -20,6 +20,7 @@ mod play;
 mod printing;
 mod read_ahead;
 mod sha256;
+mod so_far;
 mod survey;
 mod workers;
 
@@ -41,6 +42,7 @@ pub use listening::FoundRun;
 pub use live::{Found, LiveResults, LiveRuns, LiveStep, forget_histories, live};
 pub use names::labels;
 pub use printing::{BROWSER_VARIABLE, PRINTED_REPORT, PrintError, print_report};
+pub use so_far::RunSoFar;
 pub use survey::{Surveyed, survey};
 
 use collect::Collector;
@@ -129,7 +131,7 @@ pub fn replay(
                 Heard::Run { index, found, identified, overview } => {
                     // A worker that panicked has no answer, and the scope passes its panic on.
                     let Ok(identified) = identified.recv() else { break };
-                    if let Some(run) = collector.keep(index, identified, &found.counts) {
+                    if let Some(run) = collector.keep(index, identified, &found.brought) {
                         on_run(run, &overview).map_err(|source| PipelineError::Listener {
                             run: run.id.clone(),
                             source,

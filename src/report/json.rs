@@ -8,7 +8,7 @@ use super::json_beliefs::{BeliefsJson, CurvePointJson};
 use crate::campaign::Campaign;
 use crate::inverse::estimate::Estimate;
 use crate::inverse::extinction::{Extinction, extinction};
-use crate::inverse::identification::{Chain, ForcedResponse, FroudeLaw, HalfCycle, Method};
+use crate::inverse::identification::{Chain, ForcedResponse, FroudeLaw, HalfCycle, Method, Skew};
 use crate::procedure::{self, Answer, CampaignAnswer};
 use crate::progress::{Progress, progress};
 use crate::results::{IdentifiedRun, RejectedStretch, Results};
@@ -97,6 +97,7 @@ struct RunJson<'a> {
     resimulation_rmse_deg: f64,
     inertia_kg_m2: Option<Estimate>,
     inertia_used_kg_m2: Estimate,
+    skew: Option<SkewJson>,
     forced: Option<ForcedJson>,
     chain: Option<ChainJson>,
     counts: Vec<ChannelCounts>,
@@ -135,9 +136,10 @@ impl<'a> RunJson<'a> {
             resimulation_rmse_deg: identification.resimulation.rmse_rad.to_degrees(),
             inertia_kg_m2: identification.inertia_kg_m2,
             inertia_used_kg_m2: units.inertia_kg_m2(),
+            skew: identification.skew.as_ref().map(SkewJson::new),
             forced: identification.forced.as_ref().map(ForcedJson::new),
             chain: identification.chain.as_ref().map(ChainJson::new),
-            counts: run.counts.iter().map(|(of, counts)| ChannelCounts::of(*of, *counts)).collect(),
+            counts: run.brought.iter().map(ChannelCounts::of).collect(),
             gates: procedure::of_run(campaign, run),
             remarks: &identification.remarks,
         }
@@ -192,6 +194,20 @@ impl HalfCycleJson {
             frequency_rad_s: half_cycle.frequency_rad_s,
             value: half_cycle.equivalent_damping_per_s,
         }
+    }
+}
+
+#[derive(Serialize)]
+struct SkewJson {
+    sd_s: f64,
+    b1_by_per_s2: f64,
+    b3_by: f64,
+}
+
+impl SkewJson {
+    fn new(skew: &Skew) -> Self {
+        let Skew { sd_s, b1_by_per_s2, b3_by } = *skew;
+        Self { sd_s, b1_by_per_s2, b3_by }
     }
 }
 

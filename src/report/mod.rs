@@ -18,6 +18,7 @@ mod judged_run;
 mod live_page;
 mod notation;
 mod number;
+mod provisional;
 mod remark;
 mod run_page;
 mod tables;
@@ -31,6 +32,7 @@ pub use damping_table::damping_table;
 pub use diagnosis_json::{DIAGNOSIS_SCHEMA, diagnosis_json};
 pub use diagnosis_text::diagnosis_text;
 pub use json::{IDENTIFICATION_NAME, IDENTIFICATION_SCHEMA, identification_json};
+pub use provisional::{PROVISIONAL_FILE, PROVISIONAL_ID, provisional_json, provisional_words};
 pub use tables::{TableFormat, csv_tables, export_tables};
 pub use whole_file::write as write_whole;
 

@@ -6,6 +6,7 @@ use super::Rejection;
 use super::Run;
 use super::RunEnd;
 use super::RunKind;
+use super::Timing;
 use super::decay::N_HALF_CYCLES_MIN;
 use super::driven;
 use super::forced;
@@ -131,6 +132,7 @@ impl Stretch<'_> {
             roll,
             still: records.still_before(start_s, mean_rad, reach_rad),
             excitation_rad_s,
+            timing: Timing::default(),
         })
     }
 }

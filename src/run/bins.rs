@@ -14,7 +14,7 @@ pub(super) struct Bin {
 pub(super) const WIDTH_S: f64 = 0.045;
 
 /// Collects samples until a bin is full.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Binner {
     first_s: f64,
     elapsed_sum_s: f64,

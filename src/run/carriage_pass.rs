@@ -45,7 +45,7 @@ pub(super) enum Passage {
 }
 
 /// The speed channel and its steady stretches.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct CarriagePass {
     /// Samples of the speed [m/s].
     pub(super) track: Track,

@@ -22,7 +22,7 @@ impl DriveSwing {
 }
 
 /// The force of the rod, or the moment recorded instead of it.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Drive {
     /// Its samples.
     pub(super) track: Track,

@@ -41,7 +41,7 @@ struct Excitation {
 }
 
 /// The roll under the rod that no steady run has claimed so far.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Driven {
     cycles: Vec<Cycle>,
     /// Half cycles at the end without a drive.

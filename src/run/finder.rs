@@ -6,6 +6,7 @@ use devices::{Quantity, Sample};
 
 use super::Event;
 use super::Limits;
+use super::Run;
 use super::RunEnd;
 use super::carriage_pass::KNOWN_AFTER_S;
 use super::half_cycles::HalfCycles;
@@ -25,7 +26,7 @@ const WAIT_MAX_S: f64 = 4.0;
 const HOLE_SHARE: f64 = 0.25;
 
 /// Finds runs in samples pushed one by one; the same samples give the same events, however cut.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct RunFinder {
     limits: Limits,
     records: Records,
@@ -86,6 +87,19 @@ impl RunFinder {
     /// Whether neither a run nor any motion is under way, so that nothing is lost by ending here.
     pub fn is_at_rest(&self) -> bool {
         self.waiting.is_empty() && self.half_cycles.is_quiet()
+    }
+
+    /// The run under way as the end of the recording would make it now, if it would.
+    pub fn so_far(&self) -> Option<Run> {
+        if self.is_at_rest() {
+            return None;
+        }
+        let (mut ended, mut events) = (self.clone(), Vec::new());
+        ended.finish(&mut events);
+        events.into_iter().rev().find_map(|event| match event {
+            Event::Run(run) => Some(run),
+            Event::Rejected(_) => None,
+        })
     }
 
     /// The recording has ended: closes whatever was under way.

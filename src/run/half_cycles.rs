@@ -79,7 +79,7 @@ enum Leg {
 }
 
 /// Finds turning points in the bins of the roll.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct HalfCycles {
     unsmoothed: [Option<Bin>; 2],
     /// Smoothed bins since the last turning point; the last [`QUIET_S`] while the model is still.

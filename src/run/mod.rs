@@ -28,6 +28,7 @@ mod noise;
 mod passed_over;
 mod records;
 mod ripple;
+mod timing;
 mod track;
 mod trust;
 mod unused;
@@ -36,6 +37,7 @@ mod usable_end;
 pub use finder::RunFinder;
 pub use limits::Limits;
 pub(crate) use noise::SampleNoise;
+pub use timing::Timing;
 
 /// Values of one channel with their times, both of the same length.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -123,6 +125,8 @@ pub struct Run {
     /// Frequency of the excitation [rad/s] of a forced run that repeats, as the run finder saw it;
     /// none when the excitation sweeps or is irregular.
     pub excitation_rad_s: Option<f64>,
+    /// How well its times are known; whoever read the instruments says so.
+    pub timing: Timing,
 }
 
 /// A stretch that is not used, and why.

@@ -33,7 +33,7 @@ enum State {
 }
 
 /// The state machine over half cycles.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Motion {
     state: State,
     /// Half cycles of the run under way, or the last ones.

@@ -15,7 +15,7 @@ const ROUNDING: f64 = 1e-12;
 /// The fourth difference has variance 70 times that of the noise, while a motion of frequency `w`
 /// sampled every `h` enters it only with `(w h)^4`: at ten values a period with 15 %, at twenty
 /// with 1 %. Blocks of `BLOCK_LENGTH` values give one estimate each.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Noise<const BLOCK_LENGTH: usize> {
     last: [f64; 4],
     n_last: usize,
@@ -70,7 +70,7 @@ impl<const BLOCK_LENGTH: usize> Noise<BLOCK_LENGTH> {
 }
 
 /// Step of the digitiser: the smallest difference between successive values that is not zero.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Quantum {
     last: Option<f64>,
     smallest: Option<f64>,

@@ -24,7 +24,7 @@ struct Spell {
 }
 
 /// Samples that were not used; one spell per channel at a time.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct PassedOver {
     spells: Vec<Spell>,
 }

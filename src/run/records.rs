@@ -20,7 +20,7 @@ const N_STILL: usize = 4;
 const SMOOTHED: f64 = 0.612;
 
 /// The channels of one recording.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Records {
     /// Samples of the roll [rad].
     pub(super) roll: Track,

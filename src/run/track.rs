@@ -12,7 +12,7 @@ const N_INTERVALS_IN_HOLE: f64 = 4.5;
 const HOLE_MIN_S: f64 = 0.1;
 
 /// The last samples of a channel with their bins.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Track {
     time_s: VecDeque<f64>,
     value: VecDeque<f64>,

@@ -18,7 +18,7 @@ const DISTURBED: &str = "the roll was still disturbed by the change of speed";
 const BEHIND_HOLE: &str = "the roll goes on behind a hole in the record, without a release";
 
 /// What happened since the model was last still that makes a decay doubtful.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Trust {
     distrust: Option<&'static str>,
     pass_ended: bool,

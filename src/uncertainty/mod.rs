@@ -1,11 +1,12 @@
 //! What repeats and instruments leave unsure of the damping, and which conditions differ.
 //!
-//! Everything is told of `b_eq` from free decays: repeats at the amplitude at which runs are
-//! compared, the budget and the comparison at several.
+//! Everything is told of `b_eq`: repeats of free decays at the amplitude at which runs are
+//! compared, their comparison at several, and the budget there of decays and of forced runs.
 
 mod budget;
 mod comparison;
 mod repeats;
+mod slopes;
 
 pub use budget::{Budget, EQUATIONS, budgets};
 pub use comparison::{Basis, Comparison, comparisons};

@@ -1,4 +1,4 @@
-//! Decays of one condition at one speed: how much they differ from run to run.
+//! Runs of one condition at one speed: how much they differ from run to run.
 
 use serde::Serialize;
 
@@ -7,7 +7,10 @@ use crate::inverse::scattered::{combination, never_nil, nodes};
 use crate::results::{COMPARISON_DEG, IdentifiedRun, Results, by_speed};
 use crate::run::RunKind;
 
-/// The decays of one condition at one speed.
+/// Forced runs whose frequencies differ by a larger share were meant to differ.
+const FREQUENCY_APART: f64 = 0.01;
+
+/// The runs of one kind and condition at one speed, forced ones at one frequency.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Repeats {
     /// Loading or appendage condition.
@@ -30,15 +33,24 @@ pub struct Repeats {
 
 /// Decays of each condition at each speed, in order, at the amplitude of comparison.
 pub fn repeats(results: &Results) -> Vec<Repeats> {
-    repeats_at(results, COMPARISON_DEG)
+    repeats_at(results, RunKind::Decay, COMPARISON_DEG)
 }
 
-/// The same at an amplitude [deg], of the decays that reach it.
-pub(super) fn repeats_at(results: &Results, amplitude_deg: f64) -> Vec<Repeats> {
+/// The same of the runs of one kind at an amplitude [deg] that they reach.
+pub(super) fn repeats_at(results: &Results, kind: RunKind, amplitude_deg: f64) -> Vec<Repeats> {
     let mut all = Vec::new();
     for condition in results.conditions() {
-        for runs in by_speed(decays(results, condition, amplitude_deg)) {
-            all.extend(of(condition, &runs, amplitude_deg));
+        for mut runs in by_speed(giving(results, kind, condition, amplitude_deg)) {
+            let at = |run: &IdentifiedRun| run.identification.rolling_frequency_rad_s();
+            if kind == RunKind::Forced {
+                runs.sort_by(|a, b| at(a).total_cmp(&at(b)));
+            }
+            let is_repeat = |a: &&IdentifiedRun, b: &&IdentifiedRun| {
+                kind == RunKind::Decay || at(b) <= (1.0 + FREQUENCY_APART) * at(a)
+            };
+            for runs in runs.chunk_by(is_repeat) {
+                all.extend(of(condition, runs, amplitude_deg));
+            }
         }
     }
     all
@@ -50,9 +62,18 @@ pub(super) fn decays<'r>(
     condition: &str,
     amplitude_deg: f64,
 ) -> Vec<&'r IdentifiedRun> {
+    giving(results, RunKind::Decay, condition, amplitude_deg)
+}
+
+fn giving<'r>(
+    results: &'r Results,
+    kind: RunKind,
+    condition: &str,
+    amplitude_deg: f64,
+) -> Vec<&'r IdentifiedRun> {
     let runs = results.runs.iter().filter(|run| run.condition == condition);
     let gives = |run: &&IdentifiedRun| damping(run, amplitude_deg).is_some();
-    runs.filter(|run| run.run.kind == RunKind::Decay).filter(gives).collect()
+    runs.filter(|run| run.run.kind == kind).filter(gives).collect()
 }
 
 /// `b_eq` of a run [1/s] at an amplitude, where it is a number; beyond what the run reached, only

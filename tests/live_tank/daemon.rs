@@ -87,9 +87,26 @@ impl Daemon {
         assert!(sent.expect("kill is there").success());
     }
 
-    /// Its process id.
-    pub(crate) fn id(&self) -> u32 {
-        self.child.id()
+    /// Processor time that it has taken [s], all threads.
+    pub(crate) fn cpu_s(&self) -> f64 {
+        let stat = self.told("stat");
+        let after_name = stat.rsplit(')').next().unwrap_or_default();
+        let ticks = after_name.split_whitespace().skip(11).take(2);
+        ticks.map(|ticks| ticks.parse::<f64>().expect("a count")).sum::<f64>() / 100.0
+    }
+
+    /// Its resident memory [MB].
+    pub(crate) fn resident_mb(&self) -> f64 {
+        let status = self.told("status");
+        let line = status.lines().find(|line| line.starts_with("VmRSS:")).unwrap_or_default();
+        let kilobytes = line.split_whitespace().nth(1).and_then(|text| text.parse::<f64>().ok());
+        kilobytes.expect("a number") / 1024.0
+    }
+
+    /// What the system tells of it.
+    fn told(&self, name: &str) -> String {
+        let path = format!("/proc/{}/{name}", self.child.id());
+        fs::read_to_string(path).expect("Linux tells it of a process that runs")
     }
 
     /// Sends SIGTERM and waits for the end.

@@ -6,6 +6,7 @@ mod signals;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicI64, Ordering};
 
 use devices::clock::{Clock, WallClock};
 use devices::emulator::{EmulatedPort, emulator};
@@ -50,12 +51,28 @@ field = 0
 calibration = { curve = { gain = 1e-3 } }
 "#;
 
+/// The name of a device that samples at 2 kHz; every other does at 100 Hz.
+pub(crate) const FAST: &str = "fast board";
+
+/// A force cell that nobody has calibrated.
+const CELL: &str = r#"[[device]]
+name = "cell"
+profile = "arduino-text"
+port = "PORTS/cell"
+settings = { pattern = "$RD,{sequence},{time_us},{0}*{xor}" }
+[[device.channel]]
+quantity = "force"
+field = 0
+"#;
+
 /// The folder of a campaign whose instruments are emulated in this process.
 pub(crate) struct LiveTank {
     folder: tempfile::TempDir,
     ports: Vec<EmulatedPort>,
     pub(crate) clock: Arc<WallClock>,
     pub(crate) speed: f64,
+    /// Counts that a hand adds to what the force cell reads.
+    pub(crate) load_counts: Arc<AtomicI64>,
     is_calm: bool,
 }
 
@@ -76,6 +93,19 @@ impl LiveTank {
         Self::with(&format!("{rest}{devices}"), 1.0, false)
     }
 
+    /// The same with a model that nobody touches.
+    pub(crate) fn calm_of_devices(devices: &str) -> Self {
+        let rest = CAMPAIGN.split("[[device]]").next().unwrap_or_default();
+        Self::with(&format!("{rest}{devices}"), 1.0, true)
+    }
+
+    /// A model that nobody touches, and a force cell to be loaded, on a clock of that speed.
+    pub(crate) fn with_a_cell(speed: f64) -> Self {
+        let head = CAMPAIGN.split("[[device]]").take(2).collect::<Vec<_>>().join("[[device]]");
+        let head = head.replace("[live]", "[exciter]\nmoment_arm_m = 0.43\n[live]");
+        Self::with(&format!("{head}{CELL}"), speed, true)
+    }
+
     fn with(text: &str, speed: f64, is_calm: bool) -> Self {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let ports = folder.path().join("ports");
@@ -83,7 +113,8 @@ impl LiveTank {
         let text = text.replace("PORTS", &ports.display().to_string());
         fs::write(folder.path().join("campaign.toml"), text).expect("the disk has room");
         let clock = Arc::new(WallClock::start_at_speed(speed));
-        let mut tank = Self { folder, ports: Vec::new(), clock, speed, is_calm };
+        let load_counts = Arc::default();
+        let mut tank = Self { folder, ports: Vec::new(), clock, speed, load_counts, is_calm };
         let campaign = campaign::read(tank.path()).unwrap_or_else(|error| panic!("{error:?}"));
         for device in &campaign.live.devices {
             let port = tank.plugged_in(device);
@@ -94,15 +125,18 @@ impl LiveTank {
 
     fn plugged_in(&self, device: &DeviceConfig) -> EmulatedPort {
         let (quantity, is_calm) = (device.channels[0].quantity, self.is_calm);
-        let signal = move |_field: usize, time_s: f64| match quantity {
+        let load_counts = Arc::clone(&self.load_counts);
+        let signal = move |field: usize, time_s: f64| match quantity {
+            _ if field > 0 => raw_force(time_s),
             // The middle of the rest between two rounds.
             devices::Quantity::Roll if is_calm => raw_roll((time_s % 2.0) + 1.0),
             devices::Quantity::Roll => raw_roll(time_s),
             devices::Quantity::Speed => raw_speed(time_s),
-            _ => raw_force(time_s),
+            _ => raw_force(time_s) + load_counts.load(Ordering::Relaxed) as f64,
         };
         let settings = &device.settings;
-        let other_end = emulator(&device.driver, settings, 100.0, Box::new(signal));
+        let rate_hz = if device.name == FAST { 2000.0 } else { 100.0 };
+        let other_end = emulator(&device.driver, settings, rate_hz, Box::new(signal));
         let other_end = other_end.expect("the settings are good");
         let clock = Arc::clone(&self.clock) as Arc<dyn Clock>;
         EmulatedPort::plug_in(&device.port, other_end, device.line.byte_ns(), clock)

@@ -1,4 +1,5 @@
-//! What was received, lost, repeated, over range and damaged, per channel or link.
+//! What was received, lost, repeated, over range and damaged, per channel or link, and how well
+//! its times are known.
 
 use std::ops::{AddAssign, Sub};
 
@@ -35,8 +36,22 @@ pub struct Counted {
     pub quantity: Quantity,
     /// Time of its newest sample [s].
     pub time_s: f64,
+    /// The time of that sample is at most so far off [s]; none where nobody has declared how late
+    /// the instrument's filter makes it.
+    pub bound_s: Option<f64>,
     /// What was counted until then.
     pub counts: Counts,
+}
+
+/// What a channel brought in a stretch of time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Brought {
+    /// What the channel measures.
+    pub quantity: Quantity,
+    /// What was counted in it.
+    pub counts: Counts,
+    /// Its times are at most so far off [s], where that is known.
+    pub bound_s: Option<f64>,
 }
 
 impl AddAssign for Counts {

@@ -2,6 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+/// No model rolls faster [rad/s], so that a filter does no worse to any roll than here.
+const FASTEST_ROLL_RAD_S: f64 = 10.0;
+/// What a filter must leave of the amplitude of such a roll for readings to pass unflagged.
+const KEPT_SHARE: f64 = 0.98;
+
 /// The declared lag of a device.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -48,6 +53,12 @@ impl Lag {
         }
     }
 
+    /// What is left of the lag [s] at most, at any frequency of a roll, after [`Lag::delay_s`] is
+    /// taken off.
+    pub fn bound_s(&self) -> f64 {
+        self.remainder_s(FASTEST_ROLL_RAD_S).abs()
+    }
+
     /// What is left of the lag [s] at a frequency [rad/s] after [`Lag::delay_s`] is taken off.
     pub fn remainder_s(&self, frequency_rad_s: f64) -> f64 {
         match self.kind {
@@ -68,9 +79,14 @@ impl Lag {
         }
     }
 
-    /// Whether readings carry a lag that time stamps do not take off.
+    /// Whether it is known how late readings are.
+    pub fn is_declared(&self) -> bool {
+        self.kind != LagKind::Unknown
+    }
+
+    /// Whether nobody knows how late readings are, or the filter may shrink a roll.
     pub fn is_flagged(&self) -> bool {
-        self.kind == LagKind::Unknown
+        !self.is_declared() || self.gain(FASTEST_ROLL_RAD_S) < KEPT_SHARE
     }
 }
 
@@ -87,6 +103,10 @@ mod tests {
         let phase = roll_rad_s * (lag.delay_s() + lag.remainder_s(roll_rad_s));
         assert!((phase - (0.3 * roll_rad_s).atan()).abs() < 1e-12);
         assert!((lag.gain(roll_rad_s) - 0.727_7).abs() < 1e-4);
+        // Taking 0.3 s off is too much for any roll: the bound says so, and readings are flagged.
+        assert!(lag.is_flagged() && (lag.bound_s() - 0.3 + 3.0_f64.atan() / 10.0).abs() < 1e-12);
+        let fast = Lag { time_s: 0.01, ..lag };
+        assert!(!fast.is_flagged() && (1e-5..1e-4).contains(&fast.bound_s()));
     }
 
     #[test]
@@ -94,6 +114,6 @@ mod tests {
         let lag = Lag { kind: LagKind::Mean, time_s: 0.05, note: String::new() };
         assert!((lag.delay_s() - 0.025).abs() < 1e-12);
         assert!((lag.gain(std::f64::consts::PI) - 0.998_97).abs() < 1e-4);
-        assert!(Lag::default().is_flagged());
+        assert!(Lag::default().is_flagged() && !lag.is_flagged() && lag.bound_s() == 0.0);
     }
 }

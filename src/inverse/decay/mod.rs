@@ -148,6 +148,7 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
         moment: told.moment,
         resimulation: resimulation(record, thinned, linear, scatter_fit),
         inertia_kg_m2: None,
+        skew: None,
         forced: None,
         least_squares_per_s2: told.least_squares_per_s2,
         chain: told.chain,

@@ -5,6 +5,7 @@ mod driven;
 pub mod harmonic;
 mod moment;
 pub mod response;
+mod skew;
 pub mod steady;
 mod transient;
 
@@ -73,7 +74,13 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
         format!("restoring K = {restoring:.3} N m/rad from displacement and GM, taken as exact"),
     ];
     remarks.append(&mut told.remarks);
+    if response.skew.is_none() {
+        remarks.push(skew::NOT_STATED.to_owned());
+    }
     let forced = forced_response(&response, &told.moment, run);
+    skew::widen(&mut told.moment, skew::sd_s(&run.timing), |time_s| {
+        response.moment.at(time_s - run.start_s).rate / inertia.mean
+    });
     let noise_sd = response.roll.noise_sd;
     Ok(Identification {
         kind: RunKind::Forced,
@@ -96,6 +103,7 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
         moment: told.moment,
         resimulation: drive.resimulation(&record, &damping, &reference, start),
         inertia_kg_m2: Some(inertia),
+        skew: response.skew,
         forced: Some(forced),
         least_squares_per_s2: told.least_squares_per_s2,
         damping,
@@ -152,15 +160,17 @@ fn forced_response(response: &SteadyResponse, moment: &MomentHistory, run: &Run)
             response.moment.coefficient_sd,
         ),
         phase_rad: response.phase_rad(),
-        peak_moment_per_s2: peak(moment, response.roll.frequency_rad_s.mean),
+        peak_moment_per_s2: peak(moment, response),
         work_damping_n_m_s: response.work_damping_n_m_s,
         moment_time_s: response.moment_time_s.iter().map(|t| run.start_s + t).collect(),
         moment_n_m: response.moment_n_m.clone(),
     }
 }
 
-/// Mean of the largest `|U|` of each cycle, with the standard error over cycles.
-fn peak(moment: &MomentHistory, frequency_rad_s: f64) -> Estimate {
+/// Mean of the largest `|U|` of each cycle, with the standard error over cycles, and what the time
+/// between roll and moment does to all of them.
+fn peak(moment: &MomentHistory, response: &SteadyResponse) -> Estimate {
+    let frequency_rad_s = response.roll.frequency_rad_s.mean;
     let start_s = moment.time_s[0];
     let period_s = std::f64::consts::TAU / frequency_rad_s;
     let mut peaks: Vec<(f64, f64)> = Vec::new();
@@ -180,5 +190,9 @@ fn peak(moment: &MomentHistory, frequency_rad_s: f64) -> Estimate {
     let mean = peaks.iter().map(|p| p.0).sum::<f64>() / n;
     let scatter = peaks.iter().map(|p| (p.0 - mean).powi(2)).sum::<f64>() / n;
     let band = peaks.iter().map(|p| p.1.powi(2)).sum::<f64>() / n;
-    Estimate::normal(mean, (scatter.max(band) / n).sqrt())
+    let amplitude_rad = response.roll.amplitude();
+    let weight = cubic_weight(frequency_rad_s, amplitude_rad);
+    let skewed = response.skew.map_or(0.0, |skew| skew.damping_sd_per_s(weight));
+    let skewed_per_s2 = skewed * frequency_rad_s * amplitude_rad;
+    Estimate::normal(mean, (scatter.max(band) / n).sqrt().hypot(skewed_per_s2))
 }

@@ -3,11 +3,12 @@
 use std::ops::Range;
 
 use super::harmonic::{FourierSeries, Motion};
-use super::steady;
+use super::{skew, steady};
 use crate::inverse::estimate::Estimate;
+use crate::inverse::identification::Skew;
 use crate::inverse::state_space::triangle::Triangle;
 use crate::roll::exciting_moment::Exciter;
-use crate::run::Run;
+use crate::run::{Run, Timing};
 
 /// The steady response of a forced run with everything that its harmonics say.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +33,8 @@ pub struct SteadyResponse {
     pub work_damping_n_m_s: Estimate,
     /// Standard deviation of the moment's noise [N m].
     pub moment_noise_n_m: f64,
+    /// What the time between roll and moment leaves unsure, where that is stated.
+    pub skew: Option<Skew>,
 }
 
 /// Unknowns of the moment balance: inertia, linear damping, cubic damping, offset.
@@ -79,8 +82,10 @@ impl SteadyResponse {
             })
             .collect();
         let moment = FourierSeries::fit_at(&moment_time_s, &moment_n_m, roll.frequency_rad_s);
-        let balance = Balance::new(&roll, &moment_time_s, &moment_n_m, restoring_n_m_per_rad);
-        let response = balance.response(roll, moment);
+        let mut balance = Balance::new(&roll, &moment_time_s, &moment_n_m, restoring_n_m_per_rad);
+        let by_s = balance.delay(&roll, &moment, &moment_time_s, &run.timing);
+        let mut response = balance.response(roll, moment);
+        response.skew = skew::of(&run.timing, first_three(&balance.values), first_three(&by_s));
         if response.work_damping_n_m_s.hi95 < 0.0 {
             return Err(format!(
                 "the rod takes {:.3} N m s of damping out of the model, so the force or the roll \
@@ -109,7 +114,8 @@ impl SteadyResponse {
         let lead = angle(&self.roll) - angle(&self.moment);
         let lead = lead.sin().atan2(lead.cos());
         let share = |s: &FourierSeries| s.coefficient_sd / s.amplitude();
-        Estimate::normal(lead, share(&self.roll).hypot(share(&self.moment)))
+        let delay = self.skew.map_or(0.0, |skew| self.roll.frequency_rad_s.mean * skew.sd_s);
+        Estimate::normal(lead, share(&self.roll).hypot(share(&self.moment)).hypot(delay))
     }
 }
 
@@ -170,6 +176,26 @@ impl Balance {
         (0..units.len()).map(|u| triangle.explained_by(N, N + u)).collect()
     }
 
+    /// Shift of the unknowns by a unit delay of the moment, which the covariance takes with what
+    /// the timing of the run leaves unsure: the moment's own rate, explained by the unknowns.
+    fn delay(
+        &mut self,
+        roll: &FourierSeries,
+        moment: &FourierSeries,
+        time_s: &[f64],
+        timing: &Timing,
+    ) -> Vec<f64> {
+        let mut triangle = Triangle::new(N + 1);
+        for &t in time_s {
+            let line = row(&roll.at(t)).into_iter().chain([moment.at(t).rate]);
+            triangle.push(line);
+        }
+        triangle.settle();
+        let by_s = triangle.explained_by(N, N);
+        add_square(&mut self.covariance, &by_s, skew::sd_s(timing));
+        by_s
+    }
+
     fn response(&self, roll: FourierSeries, moment: FourierSeries) -> SteadyResponse {
         let w = roll.frequency_rad_s.mean;
         let c = &self.covariance;
@@ -200,8 +226,13 @@ impl Balance {
             damping_covariance,
             work_damping_n_m_s: Estimate::normal(power / rate_square, work_variance.sqrt()),
             moment_noise_n_m: self.noise_n_m,
+            skew: None,
         }
     }
+}
+
+fn first_three(values: &[f64]) -> [f64; 3] {
+    std::array::from_fn(|i| values[i])
 }
 
 /// What the unknowns multiply.
@@ -209,7 +240,8 @@ fn row(motion: &Motion) -> [f64; N] {
     [motion.acceleration, motion.rate, motion.rate.powi(3), 1.0]
 }
 
-fn add_square(covariance: &mut [[f64; N]; N], vector: &[f64], sd: f64) {
+/// Adds an error of the unknowns along a vector, of standard deviation `sd` of its length.
+pub(super) fn add_square<const M: usize>(covariance: &mut [[f64; M]; M], vector: &[f64], sd: f64) {
     for (row, a) in covariance.iter_mut().zip(vector) {
         for (entry, b) in row.iter_mut().zip(vector) {
             *entry += sd * sd * a * b;

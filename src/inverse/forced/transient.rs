@@ -6,11 +6,13 @@
 
 use super::driven::{B1, B3, Driven, INERTIA, N_DRIVEN, Sensitive};
 use super::moment::{Moment, rough_noise};
+use super::response::add_square;
+use super::skew;
 use crate::inverse::Setting;
 use crate::inverse::amplitudes::{AMPLITUDES_DEG, is_compared};
 use crate::inverse::estimate::Estimate;
 use crate::inverse::identification::{
-    DampingFit, EquivalentDamping, Identification, Method, MomentHistory,
+    DampingFit, EquivalentDamping, Identification, Method, MomentHistory, Skew,
 };
 use crate::inverse::mixture::{self, Component};
 use crate::inverse::plausible;
@@ -41,6 +43,8 @@ struct Fit<'a> {
     moment: &'a Moment,
     /// Noise of one value of the record [rad].
     noise_rad: f64,
+    /// Standard uncertainty of the time between roll and moment [s].
+    skew_sd_s: f64,
 }
 
 /// Where the fit stands.
@@ -55,6 +59,8 @@ struct Solution {
     log_evidence: f64,
     mean: [f64; N],
     covariance: [[f64; N]; N],
+    /// Change of the unknowns by a second by which the moment is late.
+    by_s: [f64; N],
     noise_rad: f64,
 }
 
@@ -64,7 +70,8 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
     let moment = Moment::of(run, setting.exciter.as_ref(), record.origin_s)?;
     let averaged = (record.n_averaged as f64).sqrt();
     let noise_rad = (rough_noise(&run.roll.value) / averaged).max(1e-7 * record.scale_rad());
-    let fit = Fit { record: &record, moment: &moment, noise_rad };
+    let skew_sd_s = skew::sd_s(&run.timing);
+    let fit = Fit { record: &record, moment: &moment, noise_rad, skew_sd_s };
     let point = fit.settle(fit.first_guess(run, setting.restoring_n_m_per_rad)?)?;
     let solutions = fit.solutions(&point);
     let unknown = |position: usize| {
@@ -104,6 +111,8 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
         (weights[B1], weights[B3]) = (weights_b1.sd.recip(), weights_b3.sd.recip());
         weights
     }));
+    let [.., b1_by_per_s2, b3_by, _] = solutions[0].by_s;
+    let skew = run.timing.skew_sd_s().map(|sd_s| Skew { sd_s, b1_by_per_s2, b3_by });
     let largest_rad = motion.iter().map(|m| m.roll_rad.abs()).fold(0.0, f64::max);
     Ok(Identification {
         kind: RunKind::Forced,
@@ -128,10 +137,11 @@ pub(super) fn identify(run: &Run, setting: &Setting) -> Result<Identification, S
         moment: history(&record, &motion, &solutions),
         resimulation,
         inertia_kg_m2: Some(inertia),
+        skew,
         forced: None,
         least_squares_per_s2: Vec::new(),
         chain: None,
-        remarks: remarks(&solutions, setting),
+        remarks: remarks(&solutions, setting, skew.is_some()),
     })
 }
 
@@ -211,7 +221,8 @@ impl Fit<'_> {
         }
     }
 
-    /// Sensitivities and residual whitened under the moment's noise and a wandering moment.
+    /// Sensitivities, residual and the effect of a delay, whitened under the moment's noise and a
+    /// wandering moment.
     fn whiten(&self, point: &Point, walk: f64) -> Filtered {
         let motion = point.driven.motion(self.moment, &self.record.time_s);
         let mut columns: Vec<Vec<f64>> =
@@ -223,6 +234,8 @@ impl Fit<'_> {
             roll - point.zero_rad - m.roll_rad - half * m.acceleration_rad_per_s2
         };
         columns.push(self.record.roll_rad.iter().zip(&motion).map(residual).collect());
+        // A moment that is read late by d has the whole roll simulated late: by -d times its rate.
+        columns.push(motion.iter().map(|m| m.rate_rad_per_s).collect());
         let columns: Vec<Column<'_>> = columns.iter().map(|c| Column::Record(c)).collect();
         let w = point.driven.natural_rad_s();
         let [.., inertia, b1, b3] = point.driven.values;
@@ -255,19 +268,18 @@ impl Fit<'_> {
         let variance = scale / (shape - 1.0);
         let mut covariance = [[0.0; N]; N];
         for column in triangle.inverse_columns(N) {
-            for (row, x) in covariance.iter_mut().zip(&column) {
-                for (entry, y) in row.iter_mut().zip(&column) {
-                    *entry += variance * x * y;
-                }
-            }
+            add_square(&mut covariance, &column, variance.sqrt());
         }
+        // The residual grows by the rate times the delay, and with it the step.
+        let by_s: [f64; N] = std::array::from_fn(|p| -triangle.explained_by(N, N + 1)[p]);
+        add_square(&mut covariance, &by_s, self.skew_sd_s);
         let step = triangle.explained_by(N, N);
         let values = &point.driven.values;
         let mean =
             std::array::from_fn(|p| values.get(p).copied().unwrap_or(point.zero_rad) - step[p]);
         let log_evidence =
             log_prior - shape * scale.ln() - 0.5 * filtered.log_determinant - log_flat;
-        Solution { log_evidence, mean, covariance, noise_rad: variance.sqrt() }
+        Solution { log_evidence, mean, covariance, by_s, noise_rad: variance.sqrt() }
     }
 }
 
@@ -355,7 +367,7 @@ fn history(record: &Record, motion: &[Sensitive], solutions: &[Solution]) -> Mom
     history
 }
 
-fn remarks(solutions: &[Solution], setting: &Setting) -> Vec<String> {
+fn remarks(solutions: &[Solution], setting: &Setting, knows_skew: bool) -> Vec<String> {
     let mut remarks = vec![
         "the excitation does not repeat: inertia and damping are those with which the measured \
          moment makes the measured roll"
@@ -367,6 +379,9 @@ fn remarks(solutions: &[Solution], setting: &Setting) -> Vec<String> {
     ];
     if setting.method == Method::PaperMcmc {
         remarks.push("the paper's chain needs a steady excitation: done by the default".to_owned());
+    }
+    if !knows_skew {
+        remarks.push(skew::NOT_STATED.to_owned());
     }
     let [.., b1, b3, _] = solutions[0].mean;
     if b1 < 0.0 && b3 < 0.0 {

@@ -18,6 +18,8 @@ export function showState(state) {
   say(byId("record"), stopped ? "Start recording" : "Stop recording");
   say(byId("doing"), state.doing);
   byId("doing").dataset.rest = state.at_rest;
+  say(byId("so-far"), state.provisional ?? "");
+  byId("provisional").hidden = state.provisional === null;
   showAlarms(state.alarms);
   showHealth(state);
   showCarriage(state);

@@ -51,6 +51,7 @@ pub(super) fn state(board: &Board) -> (String, String) {
     let mut whole = slow.clone();
     whole["at_s"] = json!(status.at_s);
     whole["doing"] = json!(doing(&status));
+    whole["provisional"] = json!(status.provisional);
     whole["pass"] = json!(status.pass);
     whole["tank_length_m"] = json!(status.tank_length_m);
     let froude = status.pass.speed_m_s.abs() / status.froude_one_m_s;

@@ -4,7 +4,8 @@ use maud::{Markup, html};
 
 use super::RunPage;
 use crate::report::document::{estimate_cell, number_cell, section, table, text_cell};
-use crate::report::number::standard_deviation;
+use crate::report::number::{significant, standard_deviation};
+use crate::roll::damping::cubic_weight;
 
 pub(super) fn part(page: &RunPage) -> Option<Markup> {
     let forced = page.identification().forced.as_ref()?;
@@ -34,5 +35,18 @@ pub(super) fn part(page: &RunPage) -> Option<Markup> {
     let columns =
         [("Symbol", ""), ("Meaning", ""), ("Unit", ""), ("Mean and 95 % interval", ""), ("sd", "")];
     let caption = "Response to the excitation. B_{eq} from the work per cycle uses no damping law.";
-    Some(section("forced", "Forced response", &table("forced-table", caption, &columns, &rows)))
+    let body = html! {
+        (table("forced-table", caption, &columns, &rows))
+        @if let Some(skew) = &page.identification().skew {
+            @let amplitude_rad = forced.roll_amplitude_rad.mean;
+            @let weight = cubic_weight(forced.frequency_rad_s.mean, amplitude_rad);
+            p.note {
+                "By the stated bounds of their clocks the time between roll and moment has a "
+                "standard uncertainty of " (significant(1e3 * skew.sd_s, 2)) " ms. That is "
+                (significant(skew.damping_sd_per_s(weight), 2)) " 1/s of the standard deviation "
+                "of b" sub { "eq" } " at this amplitude; a longer run makes it no less."
+            }
+        }
+    };
+    Some(section("forced", "Forced response", &body))
 }

@@ -23,7 +23,7 @@ mod scatter;
 
 use maud::{Markup, html};
 
-use super::{document, field_units::FieldUnits, glossary, judged_run};
+use super::{document, field_units::FieldUnits, glossary, judged_run, provisional};
 use crate::campaign::Campaign;
 use crate::inverse::identification::Identification;
 use crate::results::{IdentifiedRun, Overview, RejectedStretch};
@@ -91,6 +91,7 @@ pub(super) fn html(
         p.lead {
             (campaign.name) " · " (run.condition) " · " a href="index.html" { "campaign report" }
         }
+        @if let Some(banner) = provisional::banner(run) { (banner) }
         (result::line(&page))
         (judged_run::place(None, &[]))
         @for part in PARTS {

@@ -1,4 +1,4 @@
-//! Two fast instruments together, for as long as one likes: nothing lost, memory flat.
+//! Two fast instruments together: nothing lost, memory flat.
 
 use std::time::Duration;
 
@@ -89,11 +89,4 @@ fn soak(duration_s: f64) -> String {
 #[test]
 fn a_few_seconds_lose_nothing() {
     println!("{}", soak(4.0));
-}
-
-/// `cargo test --release -p devices --test stories -- --ignored --nocapture ten_minutes`.
-#[test]
-#[ignore = "takes ten minutes; the same is tested for seconds above"]
-fn ten_minutes_lose_nothing() {
-    println!("{}", soak(600.0));
 }
