@@ -63,6 +63,9 @@ struct Brought {
     strengths: Vec<f64>,
 }
 
+/// Logarithm of a Bayes factor that no runs give: the model has run away from them.
+const RUNAWAY: f64 = 1e12;
+
 /// Scores every effect that is not in the model yet, best first.
 pub(super) fn score(survey: &Survey, fit: &Fit, noise: &[ChannelNoise]) -> Vec<Scored> {
     let tried = tried(survey, fit);
@@ -127,6 +130,7 @@ pub(super) fn score(survey: &Survey, fit: &Fit, noise: &[ChannelNoise]) -> Vec<S
     let none = log_mean_exp(&base_logs);
     let mut scored = common_scores(survey, &common, &logs, &best_strengths, none);
     scored.extend(own_scores(survey, &own, &own_logs, &own_strengths, &base_logs, none));
+    scored.retain(|one| one.log_bayes_factor < RUNAWAY);
     scored.sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
     scored
 }

@@ -11,6 +11,10 @@ use super::term::{Base, Term};
 /// Periods before the start over which effects that remember settle.
 const PERIODS_BEFORE: f64 = 8.0;
 const STEPS_PER_PERIOD: f64 = 96.0;
+/// Points of some three thousand periods, more than any run has.
+const MOST_POINTS: f64 = 3e5;
+/// Points that a parabola needs.
+const LEAST_POINTS: f64 = 3.0;
 
 /// One forced run: its equation, its course, and when its channels are read.
 #[derive(Debug, Clone, Copy)]
@@ -103,7 +107,10 @@ impl<'a> Imposed<'a> {
         let step_s = period_s / STEPS_PER_PERIOD;
         let from_s = -PERIODS_BEFORE * period_s;
         let last_s = self.time_s.iter().filter_map(|t| t.last()).fold(0.0_f64, |a, b| a.max(*b));
-        Points { from_s, step_s, n: ((last_s - from_s) / step_s).ceil() as usize + 1 }
+        let n = ((last_s - from_s) / step_s).ceil() + 1.0;
+        // A fit that runs away to any frequency is turned away by what it leaves, not by its time.
+        let n = if (LEAST_POINTS..MOST_POINTS).contains(&n) { n } else { LEAST_POINTS } as usize;
+        Points { from_s, step_s, n }
     }
 
     /// What the terms keep of the course.

@@ -195,4 +195,17 @@ pub(super) mod tests {
             }
         }
     }
+
+    #[test]
+    fn a_course_that_runs_away_is_answered() {
+        let run = run(RunKind::Forced);
+        for frequency_rad_s in [f64::INFINITY, f64::NAN, 1e300, 1e9, 0.0, -6.9] {
+            let mut numbers = numbers(RunKind::Forced, None);
+            numbers[N_COURSE - 1] = frequency_rad_s;
+            for term in every_term(&run) {
+                let all = [&numbers[..], &term.values].concat();
+                assert_eq!(columns(RunKind::Forced, Some(&term), &all, &[]).here.len(), 800);
+            }
+        }
+    }
 }
