@@ -6,7 +6,7 @@ use super::layout::Layout;
 use super::leftover::Leftover;
 use super::next_run::{NextRun, next_run};
 use super::observation::Observation;
-use super::partial::{MOST_LEFT, take_out_parts};
+use super::partial::{MOST_LEFT, n_parts};
 use super::records::Shown;
 use super::settle::Settled;
 use super::survey::{N_LAW, Survey};
@@ -116,15 +116,17 @@ pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
         return None;
     }
     let survey = Survey::new(runs);
-    let mut grown = grow(&survey);
+    let grown = grow(&survey);
     let shown = Shown::of(&survey);
     let is_untold = |left: &Leftover| !shown.tells(&survey, &left.run, left.frequency_rad_s);
-    let mut suspects = take_out_parts(&survey, &mut grown, &is_untold);
     let left_before = leftovers(&survey, &grown.base.fit);
     let left_after = leftovers(&survey, &grown.last.fit);
     let mut causes = causes(&survey, &grown);
     let untold_left: Vec<Leftover> =
         left_after.iter().filter(|left| is_untold(left)).cloned().collect();
+    // Parts stay in the model, where they keep their share from the causes.
+    let parts = causes.split_off(causes.len() - n_parts(&grown.entered, &untold_left));
+    let mut suspects: Vec<&'static str> = parts.iter().map(|part| part.effect).collect();
     let is_left = untold_left.iter().any(Leftover::is_sure);
     let is_part = is_left && sure_share(&untold_left) > MOST_LEFT * sure_share(&left_before);
     let untold = is_part || grown.is_unnamed;

@@ -59,7 +59,8 @@ fn clean(arguments: &Arguments, seed: u64) -> Vec<Asked> {
     seeds.flat_map(of_seed).collect()
 }
 
-/// Pairs of testable effects of different classes, none brought along by the other, on the richer run sets.
+/// Pairs of testable effects of different classes, none brought along by the other, on the richer
+/// run sets.
 fn pairs(arguments: &Arguments, seed: u64) -> Vec<Asked> {
     let testable: Vec<&str> =
         CATALOGUED.iter().map(|row| row.id).filter(|id| !UNTESTABLE.contains(id)).collect();
