@@ -157,10 +157,10 @@ proptest! {
     }
 
     #[test]
-    fn what_an_instrument_says_is_what_is_read(raws in prop::collection::vec(-8000_i32..8000, 3)) {
+    fn what_an_instrument_says_is_what_is_read(raws in prop::collection::vec(-7999_i32..8000, 3)) {
         for (name, settings) in FORMS {
             let said = raws.clone();
-            // A module in engineering form shows five digits.
+            // A module in engineering form shows five digits, so that 1000 is out of its range.
             let signal = move |field: usize, _: f64| f64::from(said[field % 3]) / 8.0;
             let mut wire = Wire::new(name, settings, Box::new(signal));
             for _ in 0..SETTLED_TURNS {
