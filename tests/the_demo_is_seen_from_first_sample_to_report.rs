@@ -32,5 +32,10 @@ fn the_demo_reports_the_papers_campaign_in_a_folder_of_its_own_and_shows_it_mean
         assert!(told.contains(words), "{words} is not in:\n{told}");
     }
     assert!(folder.path().join("rolltank-demo-2/results/index.html").is_file());
+    // Nothing hides in that tank, and its instruments' noise is white.
+    let diagnosis = folder.path().join("rolltank-demo-2/results/diagnosis.json");
+    let diagnosis = std::fs::read_to_string(diagnosis).expect("the day was diagnosed");
+    let diagnosis: serde_json::Value = serde_json::from_str(&diagnosis).expect("JSON");
+    assert_eq!(diagnosis["verdict"], "adequate", "{:#}", diagnosis["causes"]);
     assert_eq!(std::fs::read_dir(folder.path().join("rolltank-demo")).unwrap().count(), 0);
 }

@@ -1,6 +1,6 @@
 //! A simulated tank whose instruments hang on real ports, faster than the world when asked.
 
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use devices::channel::{Channel, Curve};
 use devices::clock::{Clock, WallClock};
@@ -10,20 +10,22 @@ use devices::{InstrumentError, Quantity, Sample};
 
 use super::error::LiveError;
 use crate::run::Series;
-use crate::tank::{Scenario, simulate_pass};
+use crate::tank::{Instrument, Readings, Scenario, simulate_pass};
 
 /// Rest between two passes [s]; the carriage stops in it.
 const PAUSE_S: f64 = 8.0;
 /// Braking where a pass left the carriage moving [m/s2].
 const BRAKING_M_S2: f64 = 0.5;
-/// Calm water at the beginning of a pass, whose noise stands for every rest [s].
+/// Calm water at the beginning of a pass, which stands for every rest [s].
 const CALM_S: f64 = 4.0;
 /// Samples further apart belong to two passes [s].
 const APART_S: f64 = 1.0;
 
 /// Emulated instruments, and the model that they look at.
 pub struct VirtualTank {
-    scenario: Scenario,
+    /// What happens, as ideal instruments would show it.
+    exact: Scenario,
+    instruments: Vec<(Quantity, Instrument)>,
     seed: u64,
     clock: Arc<WallClock>,
     stage: Arc<RwLock<Stage>>,
@@ -42,7 +44,7 @@ struct Stage {
 #[derive(Default)]
 struct Course {
     series: Series,
-    /// The noise of its rest.
+    /// What it sees of calm water.
     calm: Vec<f64>,
 }
 
@@ -59,7 +61,11 @@ impl VirtualTank {
     ) -> Result<Self, LiveError> {
         let clock = Arc::clone(clock);
         let (stage, ports) = (Arc::default(), Vec::new());
-        let mut tank = Self { scenario, seed, clock, stage, ports };
+        let instruments = scenario.instruments.recorded();
+        // Readings come when the instruments take them: between two samples of a recording with
+        // noise there would be less of it.
+        let exact = Scenario { instruments: scenario.instruments.ideal(), ..scenario };
+        let mut tank = Self { exact, instruments, seed, clock, stage, ports };
         tank.play(&[]);
         for device in devices {
             let port = tank.plugged(device)?;
@@ -76,10 +82,22 @@ impl VirtualTank {
     fn plugged(&self, device: &DeviceConfig) -> Result<EmulatedPort, LiveError> {
         let stage = Arc::clone(&self.stage);
         let channels = device.channels.clone();
+        let readings = |channel: &Channel| {
+            let (quantity, instrument) =
+                *self.instruments.iter().find(|(quantity, _)| *quantity == channel.quantity)?;
+            Some((quantity, Readings::new(instrument, self.seed, quantity as u64)))
+        };
+        let readings: Mutex<Vec<(Quantity, Readings)>> =
+            Mutex::new(channels.iter().filter_map(readings).collect());
         let signal = move |field: usize, time_s: f64| {
+            let Some(channel) = channels.iter().find(|channel| channel.field == field) else {
+                return 0.0;
+            };
             let stage = stage.read().unwrap_or_else(PoisonError::into_inner);
-            let channel = channels.iter().find(|channel| channel.field == field);
-            channel.map_or(0.0, |channel| raw(channel, stage.value(channel.quantity, time_s)))
+            let exact = stage.value(channel.quantity, time_s);
+            let mut readings = readings.lock().unwrap_or_else(PoisonError::into_inner);
+            let own = readings.iter_mut().find(|(quantity, _)| *quantity == channel.quantity);
+            raw(channel, own.map_or(exact, |(_, readings)| readings.of(exact)))
         };
         let rates_hz = device.channels.iter().map(|channel| self.rate_hz(channel.quantity));
         let rate_hz = rates_hz.fold(1.0, f64::max);
@@ -95,8 +113,7 @@ impl VirtualTank {
     }
 
     fn rate_hz(&self, quantity: Quantity) -> f64 {
-        let recorded = self.scenario.instruments.recorded();
-        let of_it = recorded.iter().find(|(recorded, _)| *recorded == quantity);
+        let of_it = self.instruments.iter().find(|(recorded, _)| *recorded == quantity);
         of_it.map_or(1.0, |(_, instrument)| instrument.sample_rate_hz)
     }
 
@@ -104,7 +121,7 @@ impl VirtualTank {
     /// over [s].
     pub fn play(&self, passes: &[usize]) -> f64 {
         let mut stage = Stage::default();
-        for sample in simulate_pass(&self.scenario, 0, self.seed).samples {
+        for sample in simulate_pass(&self.exact, 0, self.seed).samples {
             if sample.time_s < CALM_S {
                 stage.courses[sample.quantity as usize].calm.push(sample.value);
             }
@@ -113,7 +130,7 @@ impl VirtualTank {
         for &index in passes {
             let mut last_s = 0.0;
             for Sample { quantity, time_s, value } in
-                simulate_pass(&self.scenario, index, self.seed).samples
+                simulate_pass(&self.exact, index, self.seed).samples
             {
                 let series = &mut stage.courses[quantity as usize].series;
                 series.time_s.push(offset_s + time_s);

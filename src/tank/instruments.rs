@@ -27,6 +27,12 @@ impl Instrument {
         clock(self).map(f64::to_bits) == clock(other).map(f64::to_bits)
     }
 
+    /// The same instrument without noise, steps or jitter.
+    #[must_use]
+    pub fn ideal(self) -> Self {
+        Self { noise: 0.0, quantum: 0.0, time_jitter_s: 0.0, ..self }
+    }
+
     /// Standard deviation of what noise and quantisation add to a value.
     pub fn total_noise(&self) -> f64 {
         self.noise.hypot(self.quantum / 12.0_f64.sqrt())
@@ -53,6 +59,17 @@ pub struct Instruments {
 }
 
 impl Instruments {
+    /// The same channels without noise, steps or jitter.
+    #[must_use]
+    pub fn ideal(&self) -> Self {
+        Self {
+            roll: self.roll.ideal(),
+            force: self.force.map(Instrument::ideal),
+            moment: self.moment.map(Instrument::ideal),
+            speed: self.speed.map(Instrument::ideal),
+        }
+    }
+
     /// The recorded channels in the order of [`Quantity::ALL`].
     pub fn recorded(&self) -> Vec<(Quantity, Instrument)> {
         let of = |quantity| match quantity {

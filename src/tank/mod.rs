@@ -17,6 +17,7 @@ mod instruments;
 mod motion;
 pub mod paper;
 mod parse;
+mod readings;
 mod scenario;
 mod sensing;
 mod simulate;
@@ -29,6 +30,7 @@ pub use folder::{TankError, campaign_head, truth_path, write_campaign};
 pub use free_roll::FreeRoll;
 pub use instruments::{FileFormat, Instrument, Instruments, RecordingFormat, RollUnit};
 pub use parse::ScenarioError;
+pub use readings::Readings;
 pub use scenario::{
     ArmShape, Basin, CarriagePlan, Condition, Damping, DampingLaw, DampingRow, Gap, Pass, Scenario,
     Shaker, Vibration, Waves, Zeros,

@@ -105,7 +105,8 @@ fn arm_m(shaker: &Shaker, roll_rad: f64) -> f64 {
     }
 }
 
-fn measured(instrument: &Instrument, exact: f64, noise: &mut ChaCha8Rng) -> f64 {
+/// What an instrument shows of an exact value: noise, then the steps of the digitiser.
+pub(super) fn measured(instrument: &Instrument, exact: f64, noise: &mut ChaCha8Rng) -> f64 {
     let draw: f64 = StandardNormal.sample(noise);
     let noisy = exact + instrument.noise * draw;
     if instrument.quantum > 0.0 {
