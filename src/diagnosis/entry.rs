@@ -8,7 +8,8 @@ use super::survey::Survey;
 use super::trial::Tried;
 use crate::model::Scope;
 
-/// The same for another effect: no form fits the first to the last digit.
+/// Least logarithm of a Bayes factor at which an effect may enter beside another: no form fits the
+/// first to the last digit.
 const ENTERS_BESIDE: f64 = 12.0;
 /// Share of what is left for sure that an effect must take away to enter.
 const ENOUGH: f64 = 0.2;
