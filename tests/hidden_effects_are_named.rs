@@ -149,3 +149,10 @@ fn what_is_in_no_catalogue_is_given_no_name() {
     });
     assert!([Outcome::Unexplained, Outcome::InClass].contains(&worth), "{worth:?}");
 }
+
+#[test]
+fn a_keel_that_is_lost_is_no_wave_because_the_tank_has_none_of_that_frequency() {
+    // A wave near the roll's own frequency takes up most of what such a keel leaves.
+    let (_, verdict) = diagnosed(RunSet::Rest, &["invented.lost_keel"], 1.0, 651);
+    assert_eq!((verdict.word.as_str(), verdict.causes.len()), ("unexplained", 0));
+}

@@ -94,7 +94,7 @@ pub(super) fn is_plausible(survey: &Survey, settled: &Settled, e: usize) -> bool
     let extension = &settled.fit.extensions[e];
     let layout = Layout::new(survey, &settled.fit);
     let n_strengths = extension.effect.strengths.len();
-    if odds_of_shapes(survey, settled, e, &layout) < 0.0 {
+    if log_odds(survey, settled, e, &layout) < 0.0 {
         return false;
     }
     extension.slots.iter().enumerate().all(|(s, values)| {
@@ -115,21 +115,20 @@ pub(super) fn is_plausible(survey: &Survey, settled: &Settled, e: usize) -> bool
     })
 }
 
-/// Logarithm of the odds, over all runs, that the shapes of an effect are those of its cause.
-fn odds_of_shapes(survey: &Survey, settled: &Settled, e: usize, layout: &Layout) -> f64 {
-    let extension = &settled.fit.extensions[e];
-    let n_strengths = extension.effect.strengths.len();
-    let of_slot = |(s, values): (usize, &Vec<f64>)| -> f64 {
-        let run = extension.slot_of.iter().position(|slot| *slot == Some(s));
-        let Some(run) = run else { return 0.0 };
-        let shapes = values.iter().enumerate().skip(n_strengths);
-        shapes
-            .map(|(k, shape)| {
+/// Logarithm of the odds, over all runs, that the parameters of an effect are those of its cause.
+fn log_odds(survey: &Survey, settled: &Settled, e: usize, layout: &Layout) -> f64 {
+    let Extension { effect, slots, slot_of, .. } = &settled.fit.extensions[e];
+    let of_slot = |run: usize, s: usize| -> f64 {
+        let known = (0..effect.n_parameters()).filter_map(|k| Some((k, effect.parameter(k).odds?)));
+        known
+            .map(|(k, odds)| {
                 let column = layout.parameter(&settled.fit, e, s, k);
                 let sd = settled.solution.covariance[column][column].max(0.0).sqrt();
-                effects::log_odds_of_shape(extension.effect, &survey.runs[run].at, *shape, sd)
+                odds(&survey.runs[run].at, slots[s][k], sd)
             })
             .sum()
     };
-    extension.slots.iter().enumerate().map(of_slot).sum()
+    // A set that many runs share is asked about once, in the first of them.
+    let first_of = |s: usize| slot_of.iter().position(|slot| *slot == Some(s));
+    (0..slots.len()).filter_map(|s| Some(of_slot(first_of(s)?, s))).sum()
 }

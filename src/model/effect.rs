@@ -5,8 +5,12 @@ use super::number::Sloped;
 use crate::roll::cross_modes::Section;
 use crate::run::RunKind;
 
+/// Logarithm of the odds that a parameter of a run with this value, known to this deviation, is
+/// what its effect says and not something else that takes its form.
+pub type Odds = fn(&Circumstances, f64, f64) -> f64;
+
 /// One number of an effect.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Parameter {
     /// Symbol, as the equation writes it.
     pub symbol: &'static str,
@@ -16,6 +20,8 @@ pub struct Parameter {
     pub typical: f64,
     /// Physical range; an effect outside is not named.
     pub range: [f64; 2],
+    /// What the tank says of its value; none where it may be any in its range.
+    pub odds: Option<Odds>,
 }
 
 impl Parameter {
@@ -26,7 +32,13 @@ impl Parameter {
         typical: f64,
         range: [f64; 2],
     ) -> Self {
-        Self { symbol, unit, typical, range }
+        Self { symbol, unit, typical, range, odds: None }
+    }
+
+    /// The same where the tank says which values it may have.
+    #[must_use]
+    pub const fn held_to(self, odds: Odds) -> Self {
+        Self { odds: Some(odds), ..self }
     }
 }
 

@@ -148,17 +148,3 @@ pub fn exchanged(
 ) -> Option<Base> {
     (effect.id == run_mislabelled::EFFECT.id).then(|| run_mislabelled::exchanged(base, run, values))
 }
-
-/// Logarithm of the odds that an effect with this shape, known to deviations, is what it says and
-/// not something else that takes its form; nil where the shape is free.
-pub fn log_odds_of_shape(effect: &Effect, run: &Circumstances, shape: f64, sd: f64) -> f64 {
-    match effect.id {
-        id if id == tank_residual_wave::EFFECT.id => {
-            tank_residual_wave::log_odds_of_mode(run, shape, sd)
-        }
-        id if id == tank_wall_reflection::EFFECT.id => {
-            tank_wall_reflection::log_odds_of_trip(run, shape, sd)
-        }
-        _ => 0.0,
-    }
-}

@@ -15,7 +15,7 @@ pub(super) const EFFECT: Effect = Effect {
         Parameter::new("a", "rad/s2", 0.008, [-0.1, 0.1]),
         Parameter::new("b", "rad/s2", 0.008, [-0.1, 0.1]),
     ],
-    shapes: &[Parameter::new("v", "rad/s", 0.12, [1.0, 20.0])],
+    shapes: &[Parameter::new("v", "rad/s", 0.12, [1.0, 20.0]).held_to(log_odds_of_mode)],
     nodes: |run| {
         let shares = [0.7, 0.8, 0.86, 0.92, 0.98, 1.04, 1.1, 1.2];
         each(&shares.map(|share| share * run.natural_rad_s))
@@ -37,7 +37,7 @@ const MODES_KNOWN: f64 = 0.005;
 
 /// Logarithm of the odds that a wave of `frequency_rad_s` [rad/s], known to `sd_rad_s` [rad/s], is
 /// a standing wave of the tank: what is left of an earlier run, against any frequency as likely.
-pub(super) fn log_odds_of_mode(run: &Circumstances, frequency_rad_s: f64, sd_rad_s: f64) -> f64 {
+fn log_odds_of_mode(run: &Circumstances, frequency_rad_s: f64, sd_rad_s: f64) -> f64 {
     let Some(section) = run.section else { return 0.0 };
     let (mode, spacing) = cross_modes::nearest(frequency_rad_s, &section, run.gravity_m_s2);
     let sd = sd_rad_s.hypot(MODES_KNOWN * mode);

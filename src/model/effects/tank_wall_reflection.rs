@@ -14,7 +14,7 @@ pub(super) const EFFECT: Effect = Effect {
         Parameter::new("r1", "1/s", 0.1, [-1.0, 1.0]),
         Parameter::new("r2", "1/s", 0.1, [-1.0, 1.0]),
     ],
-    shapes: &[Parameter::new("td", "s", 1.0, [3.0, 60.0])],
+    shapes: &[Parameter::new("td", "s", 1.0, [3.0, 60.0]).held_to(log_odds_of_trip)],
     nodes: delays,
     scope: Scope::Campaign,
     shows: in_reach,
@@ -50,7 +50,7 @@ fn delays(run: &Circumstances) -> Vec<Vec<f64>> {
 
 /// Logarithm of the odds that an echo after `delay_s` [s], known to `sd_s` [s], is back from the
 /// walls, against any of the trips that are tried as likely; nil where the width is not known.
-pub(super) fn log_odds_of_trip(run: &Circumstances, delay_s: f64, sd_s: f64) -> f64 {
+fn log_odds_of_trip(run: &Circumstances, delay_s: f64, sd_s: f64) -> f64 {
     let Some(width_m) = run.clear_width_m else { return 0.0 };
     let trip_s = wall_waves::trip_s(width_m, run.natural_rad_s, run.gravity_m_s2);
     let sd = sd_s.hypot(TRIP_KNOWN * trip_s);
