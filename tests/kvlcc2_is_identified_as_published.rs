@@ -30,7 +30,7 @@ pub(crate) fn folder() -> Option<PathBuf> {
 
 fn replayed() -> Option<(Campaign, Results)> {
     let campaign = campaign::read(&folder()?).expect("the campaign file is right");
-    let results = pipeline::replay(&campaign, &Options::default(), &mut |_| {}, &mut |_, _| Ok(()))
+    let results = pipeline::replay(&campaign, &Options::default(), &mut |_| {}, &mut |_| Ok(()))
         .expect("the recordings can be read");
     Some((campaign, results))
 }

@@ -59,7 +59,7 @@ fn only_run(events: &[Event]) -> &Run {
         .iter()
         .filter_map(|event| match event {
             Event::Run(run) => Some(run),
-            Event::Rejected(_) => None,
+            Event::Rejected(_) | Event::Aftermath(_) => None,
         })
         .collect();
     assert_eq!(runs.len(), 1, "one decay per recording");

@@ -132,7 +132,7 @@ fn run(boards: &[(String, f64)], seed: u64) -> (IdentifiedRun, Option<f64>) {
     fs::write(folder.path().join("campaign.toml"), &text).expect("the disk has room");
     write(folder.path(), &text, boards, seed);
     let campaign = campaign::read(folder.path()).unwrap_or_else(|error| panic!("{error:?}"));
-    let listen = &mut |_: &IdentifiedRun, _: &_| Ok(());
+    let listen = &mut |_: pipeline::Learnt<'_>| Ok(());
     let results = pipeline::replay(&campaign, &Options::default(), &mut |_| {}, listen);
     let results = results.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(results.runs.len(), 1, "{:?}", results.rejected);

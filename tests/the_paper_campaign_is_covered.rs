@@ -30,7 +30,7 @@ fn runs(scenario: &Scenario, pass: &SimulatedPass) -> Vec<Run> {
     finder.finish(&mut events);
     let run = |event| match event {
         Event::Run(run) => Some(run),
-        Event::Rejected(_) => None,
+        Event::Rejected(_) | Event::Aftermath(_) => None,
     };
     events.into_iter().filter_map(run).collect()
 }

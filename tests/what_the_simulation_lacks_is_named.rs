@@ -151,14 +151,16 @@ fn kvlcc2(to_froude: f64) -> Option<Diagnosis> {
     }
     let campaign = campaign::read(&folder).expect("the campaign file is right");
     let mut runs = Vec::new();
-    pipeline::replay(&campaign, &Options::default(), &mut |_| {}, &mut |run, _| {
-        if run.froude <= to_froude {
+    pipeline::replay(&campaign, &Options::default(), &mut |_| {}, &mut |learnt| {
+        if let Learnt::Run(run, _) = learnt
+            && run.froude <= to_froude
+        {
             runs.push(Observation::new(run, &campaign, runs.len())?);
         }
         Ok(())
     })
     .expect("the recordings can be read");
-    Some(diagnose(runs, &campaign.tank).expect("there is a run"))
+    Some(diagnose(runs, Vec::new(), &campaign.tank).expect("there is a run"))
 }
 
 #[test]

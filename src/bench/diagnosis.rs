@@ -6,7 +6,7 @@ use super::speed::{Figure, figure};
 use super::stopwatch::{fastest_s, timed};
 use crate::campaign;
 use crate::diagnosis::{Observation, diagnose};
-use crate::pipeline::{self, Options};
+use crate::pipeline::{self, Learnt, Options};
 use crate::tank::{Scenario, write_campaign};
 
 /// Times that a single run is diagnosed.
@@ -28,17 +28,19 @@ pub fn of_twelve_passes(folder: &Path) -> Result<Vec<Figure>, String> {
     })?;
     let mut runs: Vec<Observation> = Vec::new();
     let options = Options { keep_histories: false, ..Options::default() };
-    pipeline::replay(&campaign, &options, &mut |_| {}, &mut |run, _| {
-        runs.push(Observation::new(run, &campaign, runs.len())?);
+    pipeline::replay(&campaign, &options, &mut |_| {}, &mut |learnt| {
+        if let Learnt::Run(run, _) = learnt {
+            runs.push(Observation::new(run, &campaign, runs.len())?);
+        }
         Ok(())
     })
     .map_err(|error| error.to_string())?;
     let first = runs.first().ok_or("no run was found in the twelve passes")?.clone();
     let n_runs = runs.len();
-    let (all_s, diagnosis) = timed(|| diagnose(runs, &campaign.tank));
+    let (all_s, diagnosis) = timed(|| diagnose(runs, Vec::new(), &campaign.tank));
     let named: Vec<&str> = diagnosis.iter().flat_map(|d| &d.causes).map(|c| c.effect).collect();
     let named = if named.is_empty() { "no cause".to_owned() } else { named.join(", ") };
-    let one_s = fastest_s(REPEATS, || diagnose(vec![first.clone()], &campaign.tank));
+    let one_s = fastest_s(REPEATS, || diagnose(vec![first.clone()], Vec::new(), &campaign.tank));
     Ok(vec![
         figure(
             format!("diagnosis of {n_runs} runs, decays and forced, on all cores: {named}"),

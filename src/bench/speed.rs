@@ -198,7 +198,7 @@ pub fn campaign_of_a_thousand(folder: &Path) -> Result<Vec<Figure>, String> {
     })?;
     let (seconds, results) = timed(|| {
         let options = Options { keep_histories: false, ..Options::default() };
-        pipeline::replay(&campaign, &options, &mut |_| {}, &mut |_, _| Ok(()))
+        pipeline::replay(&campaign, &options, &mut |_| {}, &mut |_| Ok(()))
     });
     let n_runs = results.map_err(|error| error.to_string())?.runs.len();
     Ok(vec![figure(

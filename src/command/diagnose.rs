@@ -29,8 +29,8 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     let campaign = campaign::read(&arguments.campaign)?;
     let mut observed = Observed::default();
     let options = Options { keep_histories: false, ..Options::default() };
-    pipeline::replay(&campaign, &options, &mut |_| {}, &mut |run, _| {
-        observed.hear(run, &campaign);
+    pipeline::replay(&campaign, &options, &mut |_| {}, &mut |learnt| {
+        observed.hear(learnt, &campaign);
         Ok(())
     })?;
     let observed = observed.judged(&campaign.judgements);

@@ -8,7 +8,7 @@ use super::method::Identifying;
 use super::terminal::Terminal;
 use super::{Exit, Failure};
 use crate::campaign::Campaign;
-use crate::pipeline::{self, Observed, Options, Progress};
+use crate::pipeline::{self, Learnt, Observed, Options, Progress};
 use crate::report;
 use crate::results::Results;
 
@@ -61,10 +61,13 @@ fn replay_with(
                 n_lost += terminal.pause(|| log_notes(recording, notes));
             }
         },
-        &mut |run, overview| {
+        &mut |learnt| {
+            if into.is_some() {
+                observed.hear(learnt, campaign);
+            }
+            let Learnt::Run(run, overview) = learnt else { return Ok(()) };
             terminal.line(&format!("{}  Fr {:.3}  {}", run.id, run.froude, run.condition));
             if let Some(dir) = into {
-                observed.hear(run, campaign);
                 pipeline::write_run_page(campaign, run, overview, dir)?;
             }
             Ok(())

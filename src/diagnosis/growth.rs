@@ -15,7 +15,7 @@ use crate::model::effects;
 pub(super) const ENTERS: f64 = 7.0;
 /// Most effects of a model.
 const MOST: usize = 5;
-/// Times that the base model is settled anew with the noise that it left.
+/// Times that a model is settled anew with the noise that it left.
 const MOST_STARTS: usize = 6;
 /// Effects that are fitted in full at each step.
 const FITTED: usize = 8;
@@ -46,25 +46,28 @@ pub(super) struct Grown {
     pub(super) is_unnamed: bool,
 }
 
-/// Grows the base model of a campaign.
-pub(super) fn grow(survey: &Survey) -> Grown {
-    let mut current = settle(survey, survey.first_fit(), &rough_noise(survey));
-    let mut noise = white(survey.noise(&current.fit));
-    // A fit that starts far away settles as its noise does.
-    for _ in 0..MOST_STARTS {
-        current = settle(survey, current.fit, &noise);
-        let next = white(survey.noise(&current.fit));
-        let change = |(a, b): (&ChannelNoise, &ChannelNoise)| (a.sd[0] / b.sd[0] - 1.0).abs();
-        let is_still = next.iter().zip(&noise).map(change).all(|change| change < 0.01);
-        noise = next;
-        if is_still {
-            break;
-        }
-    }
+/// A model and the effects in it, from which another grows.
+pub(super) struct Stem {
+    pub(super) fit: Fit,
+    pub(super) entered: Vec<Entered>,
+    pub(super) ranking: Vec<(&'static str, f64)>,
+}
+
+/// Grows the base model of a campaign, or a stem that is known from other records of it.
+pub(super) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
+    let (mut current, mut noise) = with_its_noise(survey, survey.first_fit(), &rough_noise(survey));
     let base_fit = current.fit.clone();
     let mut entered: Vec<Entered> = Vec::new();
     let (mut ranking, mut implausible) = (Vec::new(), Vec::new());
     let mut is_unnamed = false;
+    if let Some(stem) = stem {
+        (current, noise) =
+            with_its_noise(survey, stem.fit.clone(), &white(survey.noise(&stem.fit)));
+        let before = leftovers(survey, &base_fit);
+        entered = stem.entered;
+        entered.iter_mut().for_each(|known| known.found = sure_share(&before));
+        ranking = stem.ranking;
+    }
     while entered.len() < MOST {
         let Some(step) = step(survey, &current, &noise, &entered) else { break };
         if entered.is_empty() {
@@ -106,6 +109,28 @@ pub(super) fn grow(survey: &Survey) -> Grown {
     }
     let (base, last) = (base.over_scatters(survey), last.over_scatters(survey));
     Grown { base, last, noise, entered, ranking, implausible, is_unnamed }
+}
+
+/// A model settled anew with the noise that it leaves: what starts far away settles as its noise
+/// does.
+fn with_its_noise(
+    survey: &Survey,
+    start: Fit,
+    noise: &[ChannelNoise],
+) -> (Settled, Vec<ChannelNoise>) {
+    let mut current = settle(survey, start, noise);
+    let mut noise = white(survey.noise(&current.fit));
+    for _ in 0..MOST_STARTS {
+        current = settle(survey, current.fit, &noise);
+        let next = white(survey.noise(&current.fit));
+        let change = |(a, b): (&ChannelNoise, &ChannelNoise)| (a.sd[0] / b.sd[0] - 1.0).abs();
+        let is_still = next.iter().zip(&noise).map(change).all(|change| change < 0.01);
+        noise = next;
+        if is_still {
+            break;
+        }
+    }
+    (current, noise)
 }
 
 /// One step of growth.

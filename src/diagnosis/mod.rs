@@ -35,10 +35,12 @@ mod survey;
 mod trial;
 mod unexplained;
 mod verdict;
+mod whole;
 
 pub use correction::{Corrected, corrected};
 pub use leftover::Leftover;
 pub use next_run::{NextRun, PlannedRun};
 pub use observation::Observation;
 pub use unexplained::Unexplained;
-pub use verdict::{Bias, Cause, Change, Diagnosis, Gain, Verdict, diagnose};
+pub use verdict::{Bias, Cause, Change, Diagnosis, Gain, Verdict};
+pub use whole::diagnose;

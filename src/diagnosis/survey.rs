@@ -69,6 +69,21 @@ impl Extension {
         let slot = self.slot_of[run]?;
         Some(Term { effect: self.effect, values: self.slots[slot].clone() })
     }
+
+    /// The same in some of its runs, with the sets of parameters that these have.
+    fn of_runs(&self, places: &[usize]) -> Self {
+        let mut kept: Vec<usize> = Vec::new();
+        let slot_of = places.iter().map(|place| {
+            let slot = self.slot_of[*place]?;
+            Some(kept.iter().position(|one| *one == slot).unwrap_or_else(|| {
+                kept.push(slot);
+                kept.len() - 1
+            }))
+        });
+        let slot_of = slot_of.collect();
+        let of = |sets: &[Vec<f64>]| kept.iter().map(|slot| sets[*slot].clone()).collect();
+        Self { effect: self.effect, slots: of(&self.slots), centres: of(&self.centres), slot_of }
+    }
 }
 
 impl Survey {
@@ -101,6 +116,23 @@ impl Survey {
         let states = self.each_run(&|run| self.start(run, middling[self.condition_of[run]]));
         let laws = (0..n_conditions).map(|condition| self.first_law(condition, &states)).collect();
         Fit { laws, log_scale: 0.0, extensions: Vec::new(), states }
+    }
+
+    /// A fit to other records of the same runs, from which a fit to these can start; none where they
+    /// are not the same.
+    pub(super) fn adopted(&self, other: &Self, fit: &Fit) -> Option<Fit> {
+        let place = |run: &Arc<Observation>| other.runs.iter().position(|o| o.id == run.id);
+        let places: Vec<usize> = self.runs.iter().map(place).collect::<Option<_>>()?;
+        let law = |name: &String| {
+            let known = other.conditions.iter().position(|c| c == name)?;
+            Some(fit.laws[known])
+        };
+        Some(Fit {
+            laws: self.conditions.iter().map(law).collect::<Option<_>>()?,
+            log_scale: fit.log_scale,
+            extensions: fit.extensions.iter().map(|one| one.of_runs(&places)).collect(),
+            states: places.iter().map(|place| fit.states[*place].clone()).collect(),
+        })
     }
 
     /// The law through the numbers of a condition's runs.

@@ -1,11 +1,10 @@
 //! What is told of a campaign: verdict, causes in order of entry, gain, bias, what is left.
 
 use super::gain::{self, HeldOut};
-use super::growth::{Grown, grow, leftovers, sure_share};
+use super::growth::{Grown, leftovers, sure_share};
 use super::layout::Layout;
 use super::leftover::Leftover;
 use super::next_run::{NextRun, next_run};
-use super::observation::Observation;
 use super::partial::{MOST_LEFT, n_parts};
 use super::records::Shown;
 use super::settle::Settled;
@@ -110,18 +109,13 @@ pub struct Diagnosis {
     pub model: ModelFile,
 }
 
-/// Diagnoses the runs of a campaign; none without runs.
-pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
-    if runs.is_empty() {
-        return None;
-    }
-    let survey = Survey::new(runs);
-    let grown = grow(&survey);
-    let shown = Shown::of(&survey);
-    let is_untold = |left: &Leftover| !shown.tells(&survey, &left.run, left.frequency_rad_s);
-    let left_before = leftovers(&survey, &grown.base.fit);
-    let left_after = leftovers(&survey, &grown.last.fit);
-    let mut causes = causes(&survey, &grown);
+/// What a grown model says of the runs that it has grown on.
+pub(super) fn told(survey: &Survey, grown: &Grown, tank: &Tank) -> Diagnosis {
+    let shown = Shown::of(survey);
+    let is_untold = |left: &Leftover| !shown.tells(survey, &left.run, left.frequency_rad_s);
+    let left_before = leftovers(survey, &grown.base.fit);
+    let left_after = leftovers(survey, &grown.last.fit);
+    let mut causes = causes(survey, grown);
     let untold_left: Vec<Leftover> =
         left_after.iter().filter(|left| is_untold(left)).cloned().collect();
     // Parts stay in the model, where they keep their share from the causes.
@@ -143,29 +137,29 @@ pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
     } else {
         Verdict::Named
     };
-    let next_run = next_run(&survey, &grown, tank);
-    let model = model(&survey, &grown, &causes);
+    let next_run = next_run(survey, grown, tank);
+    let model = model(survey, grown, &causes);
     let mut implausible: Vec<&'static str> = Vec::new();
     for (id, _) in &grown.implausible {
         if !implausible.contains(id) {
             implausible.push(id);
         }
     }
-    Some(Diagnosis {
+    Diagnosis {
         verdict,
         causes,
         suspects,
         implausible,
-        gain: gain(&survey, &grown),
-        bias: bias(&survey, &grown),
-        ranking: grown.ranking,
+        gain: gain(survey, grown),
+        bias: bias(survey, grown),
+        ranking: grown.ranking.clone(),
         left_before,
         left_after,
-        unexplained_before: unexplained(&survey, &grown.base.fit),
-        unexplained_after: unexplained(&survey, &grown.last.fit),
+        unexplained_before: unexplained(survey, &grown.base.fit),
+        unexplained_after: unexplained(survey, &grown.last.fit),
         next_run,
         model,
-    })
+    }
 }
 
 fn causes(survey: &Survey, grown: &Grown) -> Vec<Cause> {

@@ -8,9 +8,8 @@ use std::thread;
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
 use crate::page::{Board, Order, Orders};
-use crate::pipeline::{self, Observed};
+use crate::pipeline::{self, Learnt, Observed};
 use crate::report;
-use crate::results::IdentifiedRun;
 
 /// A diagnosis that several look at.
 pub(super) type Diagnosed = Arc<Diagnosis>;
@@ -44,9 +43,9 @@ impl Diagnoser {
         Self { known, board: board.clone(), ask }
     }
 
-    /// Takes a run whose histories are still with it.
-    pub(super) fn hear(&self, run: &IdentifiedRun, campaign: &Campaign) {
-        lock(&self.known).observed.hear(run, campaign);
+    /// Takes a run whose histories are still with it, or what came after one.
+    pub(super) fn hear(&self, learnt: Learnt<'_>, campaign: &Campaign) {
+        lock(&self.known).observed.hear(learnt, campaign);
     }
 
     /// Asks for a diagnosis of what was heard; the answer comes when it comes.

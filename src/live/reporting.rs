@@ -15,7 +15,7 @@ use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
 use crate::inverse::estimate::Estimate;
 use crate::page::Board;
-use crate::pipeline::{self, FoundRun, LiveResults, LiveStep};
+use crate::pipeline::{self, FoundRun, Learnt, LiveResults, LiveStep};
 use crate::report;
 use crate::results::{IdentifiedRun, Results};
 
@@ -76,6 +76,12 @@ impl Reporter<'_> {
                     self.diagnoser.ask();
                     None
                 }
+                LiveStep::Aftermath { recording, aftermath } => {
+                    let learnt = Learnt::Aftermath(recording, &aftermath);
+                    self.diagnoser.hear(learnt, self.campaign);
+                    self.diagnoser.ask();
+                    continue;
+                }
                 LiveStep::Refused { found, reason } => {
                     let at_ns = self.clock.now_ns();
                     let told = self.provisional.replaced(&found);
@@ -90,7 +96,7 @@ impl Reporter<'_> {
                     let at_ns = self.clock.now_ns();
                     let told = self.provisional.replaced(&found);
                     let outcome = Ok(identified(self.campaign, run));
-                    self.diagnoser.hear(run, self.campaign);
+                    self.diagnoser.hear(Learnt::Run(run, &overview), self.campaign);
                     self.diagnoser.ask();
                     pipeline::forget_histories(run);
                     Some(Reported { found, outcome, at_ns, told })

@@ -21,7 +21,7 @@ use super::under_way::{Ended, State, UnderWay};
 use crate::campaign::{Campaign, Recording};
 use crate::judgement::Judgements;
 use crate::page::{Board, Order};
-use crate::pipeline::{self, Options};
+use crate::pipeline::{self, Learnt, Options};
 use crate::results::Results;
 
 /// What a session is made of.
@@ -163,12 +163,14 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
 fn replayed(campaign: &Campaign, is_ending: &AtomicBool, diagnoser: &Diagnoser) -> Option<Results> {
     let dir = pipeline::results_folder(campaign);
     let options = Options { keep_histories: false, ..Options::default() };
-    let replayed = pipeline::replay(campaign, &options, &mut |_| {}, &mut |run, overview| {
+    let replayed = pipeline::replay(campaign, &options, &mut |_| {}, &mut |learnt| {
         if is_ending.load(Ordering::Acquire) {
             return Err("the daemon is to end".into());
         }
-        diagnoser.hear(run, campaign);
-        pipeline::write_run_page(campaign, run, overview, &dir)?;
+        diagnoser.hear(learnt, campaign);
+        if let Learnt::Run(run, overview) = learnt {
+            pipeline::write_run_page(campaign, run, overview, &dir)?;
+        }
         Ok(())
     });
     match replayed {

@@ -34,6 +34,11 @@ impl<'c> Collector<'c> {
         self.results.runs.len()
     }
 
+    /// Name of a recording.
+    pub(super) fn recording(&self, index: usize) -> &str {
+        &self.campaign.recordings[index].name
+    }
+
     /// Keeps a run of a recording with what instruments brought in it; one that could not be
     /// identified becomes a rejection.
     pub(super) fn keep(

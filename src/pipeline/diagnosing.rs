@@ -1,39 +1,54 @@
 //! Gathering the runs of a campaign for the diagnosis while they are identified.
 
+use std::collections::VecDeque;
 use std::f64::consts::TAU;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use super::Learnt;
 use crate::campaign::Campaign;
 use crate::diagnosis::{self, Diagnosis, Observation};
 use crate::judgement::{Judgements, Place};
 use crate::results::IdentifiedRun;
-use crate::run::RunKind;
+use crate::run::{Aftermath, RunKind, Series};
 
 /// Most runs that are diagnosed together: more repeat each other, and a diagnosis takes time with
 /// their square.
 const MOST_RUNS: usize = 100;
 /// Periods within which nobody brings a model to rest, heels it and lets it go.
 const PERIODS_TO_RELEASE: f64 = 4.0;
+/// Runs that are remembered until it is known what came after them.
+const MOST_REMEMBERED: usize = 4;
 /// Runs this near in Froude number and roll [rad] are repeats.
 const NEAR: [f64; 2] = [0.02, 0.03];
 
 /// What the diagnosis will see of the runs heard so far.
 #[derive(Debug, Clone, Default)]
 pub struct Observed {
-    observations: Vec<(Place, Observation)>,
+    observations: Vec<Seen>,
     left_out: Vec<String>,
-    last: Option<LastHeard>,
+    /// The last runs, of which it is not known yet what came after them.
+    last: VecDeque<LastHeard>,
+    n_runs: usize,
     n_heard: usize,
     n_repeats: usize,
 }
 
-/// What is remembered of the run heard last.
+/// A run that takes part.
+#[derive(Debug, Clone)]
+struct Seen {
+    place: Place,
+    alone: Observation,
+    /// The same with what the model did after it.
+    whole: Option<Observation>,
+    /// Whether it lies in what the model did after an earlier one.
+    is_within: bool,
+}
+
+/// What is remembered of a run until it is known what came after it.
 #[derive(Debug, Clone)]
 struct LastHeard {
-    id: String,
-    recording: String,
-    kind: RunKind,
-    end_s: f64,
+    run: IdentifiedRun,
+    order: usize,
 }
 
 impl LastHeard {
@@ -41,49 +56,85 @@ impl LastHeard {
     /// it began is not known.
     fn goes_on_in(&self, run: &IdentifiedRun) -> bool {
         let period_s = TAU / run.identification.natural_frequency_rad_s.mean;
-        let after_s = run.run.start_s - self.end_s;
-        let are_decays = self.kind == RunKind::Decay && run.run.kind == RunKind::Decay;
+        let after_s = run.run.start_s - self.run.run.end_s;
+        let are_decays = self.run.run.kind == RunKind::Decay && run.run.kind == RunKind::Decay;
         let is_near = (0.0..PERIODS_TO_RELEASE * period_s).contains(&after_s);
-        are_decays && is_near && self.recording == run.recording
+        are_decays && is_near && self.run.recording == run.recording
     }
 }
 
+/// Adds samples behind those of a channel.
+fn append(series: &mut Series, later: &Series) {
+    series.time_s.extend_from_slice(&later.time_s);
+    series.value.extend_from_slice(&later.value);
+}
+
 impl Observed {
-    /// Takes a run whose histories are still with it.
-    pub fn hear(&mut self, run: &IdentifiedRun, campaign: &Campaign) {
-        let observation = match self.last.as_ref().filter(|last| last.goes_on_in(run)) {
-            Some(last) => Err(format!("it goes on from {}, and did not begin at rest", last.id)),
-            None => Observation::new(run, campaign, self.n_heard),
+    /// Takes a run whose histories are still with it, or what came after one.
+    pub fn hear(&mut self, learnt: Learnt<'_>, campaign: &Campaign) {
+        match learnt {
+            Learnt::Run(run, _) => self.hear_run(run, campaign),
+            Learnt::Aftermath(recording, after) => self.hear_after(recording, after, campaign),
+        }
+    }
+
+    fn hear_run(&mut self, run: &IdentifiedRun, campaign: &Campaign) {
+        let before = self.last.back().filter(|last| last.goes_on_in(run));
+        let observation = match before {
+            Some(last) => {
+                Err(format!("it goes on from {}, and did not begin at rest", last.run.id))
+            }
+            None => Observation::new(run, campaign, self.n_runs),
         };
-        self.last = Some(LastHeard {
-            id: run.id.clone(),
-            recording: run.recording.clone(),
-            kind: run.run.kind,
-            end_s: run.run.end_s,
-        });
+        if self.last.len() == MOST_REMEMBERED {
+            self.last.pop_front();
+        }
+        self.last.push_back(LastHeard { run: run.clone(), order: self.n_runs });
         match observation {
-            Ok(observation) => {
+            Ok(alone) => {
                 let (start_s, end_s) = (run.run.start_s, run.run.end_s);
                 let place = Place { recording: run.recording.clone(), start_s, end_s };
-                self.observations.push((place, observation));
+                self.observations.push(Seen { place, alone, whole: None, is_within: false });
             }
             Err(reason) => self.left_out.push(format!("{}: {reason}", run.id)),
         }
+        self.n_runs += 1;
         self.n_heard += 1;
         if self.observations.len() > MOST_RUNS {
             self.let_go_of_a_repeat();
         }
     }
 
+    /// Joins what the model did after a decay to it, later runs in it included.
+    fn hear_after(&mut self, recording: &str, after: &Aftermath, campaign: &Campaign) {
+        let end_s = after.roll.time_s.last().copied().unwrap_or(after.run_end_s);
+        let ends = |end_s: f64| end_s.to_bits() == after.run_end_s.to_bits();
+        let is_of = |last: &LastHeard| last.run.recording == recording && ends(last.run.run.end_s);
+        let Some(at) = self.last.iter().position(is_of) else { return };
+        let LastHeard { mut run, order } = self.last[at].clone();
+        append(&mut run.run.roll, &after.roll);
+        append(&mut run.run.drive, &after.drive);
+        for seen in &mut self.observations {
+            let place = &seen.place;
+            if place.recording == recording && ends(place.end_s) {
+                seen.whole = Observation::new(&run, campaign, order).ok();
+            }
+            seen.is_within |=
+                place.recording == recording && (after.run_end_s..end_s).contains(&place.start_s);
+        }
+        self.n_heard += 1;
+    }
+
     /// The same without the runs that were rejected by hand.
     #[must_use]
     pub fn judged(mut self, judgements: &Judgements) -> Self {
         let left_out = &mut self.left_out;
-        self.observations.retain(|(Place { recording, start_s, end_s }, observation)| {
-            let rejection = judgements.rejection(recording, *start_s, *end_s);
-            left_out.extend(rejection.map(|rejection| {
-                format!("{}: rejected by hand by {}", observation.id, rejection.by)
-            }));
+        self.observations.retain(|Seen { place, alone, .. }| {
+            let rejection = judgements.rejection(&place.recording, place.start_s, place.end_s);
+            left_out
+                .extend(rejection.map(|rejection| {
+                    format!("{}: rejected by hand by {}", alone.id, rejection.by)
+                }));
             rejection.is_none()
         });
         self
@@ -107,8 +158,12 @@ impl Observed {
     /// because of it.
     pub fn diagnosed(self, campaign: &Campaign) -> Option<Diagnosis> {
         let diagnosed = catch_unwind(AssertUnwindSafe(|| {
-            let observations = self.observations.into_iter().map(|(_, one)| one).collect();
-            diagnosis::diagnose(observations, &campaign.tank)
+            let has_more = self.observations.iter().any(|seen| seen.whole.is_some());
+            let whole = self.observations.iter().filter(|seen| has_more && !seen.is_within);
+            let whole = whole.map(|seen| seen.whole.as_ref().unwrap_or(&seen.alone).clone());
+            let whole = whole.collect();
+            let alone = self.observations.into_iter().map(|seen| seen.alone).collect();
+            diagnosis::diagnose(alone, whole, &campaign.tank)
         }));
         diagnosed.unwrap_or_else(|_| {
             tracing::error!(
@@ -124,14 +179,14 @@ impl Observed {
         self.observations.is_empty()
     }
 
-    /// Runs heard so far.
+    /// Runs and what came after them, heard so far.
     pub fn n_heard(&self) -> usize {
         self.n_heard
     }
 
     /// Lets go of the second of the runs that have most like them: the first and the last stay.
     fn let_go_of_a_repeat(&mut self) {
-        let kind = |(_, run): &(Place, Observation)| -> (String, RunKind, [i64; 3]) {
+        let kind = |Seen { alone: run, .. }: &Seen| -> (String, RunKind, [i64; 3]) {
             let at = &run.at;
             let place = |value: f64, near: f64| (value / near).round() as i64;
             let rolling = if at.kind == RunKind::Forced { place(at.rolling_rad_s, 0.2) } else { 0 };

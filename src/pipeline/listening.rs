@@ -14,7 +14,7 @@ use super::so_far::RunSoFar;
 use super::workers::{Identified, Workers};
 use crate::campaign::{Campaign, Recording};
 use crate::results::Overview;
-use crate::run::{Event, Limits, Rejection, RunEnd, RunFinder, RunKind, Timing};
+use crate::run::{Aftermath, Event, Limits, Rejection, RunEnd, RunFinder, RunKind, Timing};
 
 /// Longest time before the end of a rest in which the next run may begin [s], with a margin.
 const AT_REST_S: f64 = 60.0;
@@ -29,6 +29,8 @@ pub(super) enum Heard {
     Run { index: usize, found: FoundRun, identified: Receiver<Identified>, overview: Overview },
     /// A stretch will not be used.
     Rejected { index: usize, rejection: Rejection },
+    /// What the model did after a decay is known.
+    Aftermath { index: usize, aftermath: Aftermath },
     /// Results are to be told again.
     TellAgain,
     /// The recording has ended.
@@ -176,6 +178,7 @@ impl<'a> Listening<'a> {
                     }
                 }
                 Event::Rejected(rejection) => Heard::Rejected { index, rejection },
+                Event::Aftermath(aftermath) => Heard::Aftermath { index, aftermath },
             })?;
         }
         Ok(())

@@ -15,7 +15,7 @@ use super::so_far::RunSoFar;
 use super::workers::Workers;
 use crate::campaign::Campaign;
 use crate::results::{IdentifiedRun, Overview, Results};
-use crate::run::Rejection;
+use crate::run::{Aftermath, Rejection};
 
 /// Runs that may wait to be told: more than a day has.
 const QUEUE_LENGTH: usize = 256;
@@ -59,6 +59,13 @@ pub enum LiveStep<'r> {
         found: FoundRun,
         /// Why not.
         reason: String,
+    },
+    /// What the model did after a decay of the recording is known.
+    Aftermath {
+        /// Name of the recording.
+        recording: &'r str,
+        /// What it did.
+        aftermath: Aftermath,
     },
     /// A stretch was not used, or the recording has ended.
     Noted,
@@ -162,6 +169,9 @@ impl LiveResults<'_> {
             Heard::Rejected { index, rejection } => {
                 self.collector.reject(index, rejection);
                 LiveStep::Noted
+            }
+            Heard::Aftermath { index, aftermath } => {
+                LiveStep::Aftermath { recording: self.collector.recording(index), aftermath }
             }
             Heard::Ended { overview, .. } => {
                 self.collector.end_recording(overview);

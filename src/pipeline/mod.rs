@@ -32,6 +32,7 @@ use replay::Note;
 use crate::campaign::Campaign;
 use crate::inverse::identification::Method;
 use crate::results::{IdentifiedRun, Overview, Results};
+use crate::run::Aftermath;
 
 pub use appendix::write_appendix;
 pub use diagnosing::Observed;
@@ -59,7 +60,7 @@ pub struct Options {
     pub seed: u64,
     /// Recorded seconds played in one second [-]; none plays as fast as it goes.
     pub speed: Option<f64>,
-    /// Whether the histories of every run are kept after `on_run` has seen them; a day has more of
+    /// Whether the histories of every run are kept after the listener has seen them; a day has more of
     /// them than memory.
     pub keep_histories: bool,
 }
@@ -93,6 +94,15 @@ pub enum Progress<'p> {
     },
 }
 
+/// What a replay has learnt of a recording.
+#[derive(Debug, Clone, Copy)]
+pub enum Learnt<'l> {
+    /// A run was identified; the overview shows the recording up to its end.
+    Run(&'l IdentifiedRun, &'l Overview),
+    /// What the model did after a decay of the recording.
+    Aftermath(&'l str, &'l Aftermath),
+}
+
 /// An error of whoever listens to the runs.
 pub type ListenerError = Box<dyn std::error::Error + Send + Sync>;
 
@@ -101,16 +111,16 @@ const QUEUE_LENGTH: usize = 8;
 
 /// Replays every recording of a campaign and identifies its runs.
 ///
-/// Each run is handed to `on_run` at once, with the overview of its recording up to its end.
+/// Each run is told to `listener` at once.
 ///
 /// # Errors
 /// [`PipelineError`] at the first recording that cannot be read, two recordings that overlap in
-/// time, or the first error of `on_run`.
+/// time, or the first error of the listener.
 pub fn replay(
     campaign: &Campaign,
     options: &Options,
     progress: &mut dyn FnMut(Progress<'_>),
-    on_run: &mut dyn FnMut(&IdentifiedRun, &Overview) -> Result<(), ListenerError>,
+    listener: &mut dyn FnMut(Learnt<'_>) -> Result<(), ListenerError>,
 ) -> Result<Results, PipelineError> {
     let (heard, queue) = mpsc::sync_channel(QUEUE_LENGTH);
     let sizes: Vec<u64> = campaign.recordings.iter().map(size_bytes).collect();
@@ -132,16 +142,18 @@ pub fn replay(
                     // A worker that panicked has no answer, and the scope passes its panic on.
                     let Ok(identified) = identified.recv() else { break };
                     if let Some(run) = collector.keep(index, identified, &found.brought) {
-                        on_run(run, &overview).map_err(|source| PipelineError::Listener {
-                            run: run.id.clone(),
-                            source,
-                        })?;
+                        listener(Learnt::Run(run, &overview)).map_err(of_listener(&run.id))?;
                         if !options.keep_histories {
                             histories::drop_from(run);
                         }
                     }
                 }
                 Heard::Rejected { index, rejection } => collector.reject(index, rejection),
+                Heard::Aftermath { index, aftermath } => {
+                    let recording = &campaign.recordings[index].name;
+                    let learnt = Learnt::Aftermath(recording, &aftermath);
+                    listener(learnt).map_err(of_listener(recording))?;
+                }
                 Heard::Ended { overview, notes } => {
                     progress(Progress::Ended { recording: &overview.recording, notes: &notes });
                     collector.end_recording(overview);
@@ -150,6 +162,10 @@ pub fn replay(
         }
         Ok(collector.into_results())
     })
+}
+
+fn of_listener(what: &str) -> impl FnOnce(ListenerError) -> PipelineError {
+    move |source| PipelineError::Listener { run: what.to_owned(), source }
 }
 
 /// The recordings in which no run could be identified, as sentences that say why.

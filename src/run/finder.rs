@@ -8,7 +8,9 @@ use super::Event;
 use super::Limits;
 use super::Run;
 use super::RunEnd;
+use super::aftermath::Following;
 use super::carriage_pass::KNOWN_AFTER_S;
+use super::closer::Closer;
 use super::half_cycles::HalfCycles;
 use super::half_cycles::QUIET_S;
 use super::half_cycles::Swing;
@@ -32,6 +34,8 @@ pub struct RunFinder {
     records: Records,
     half_cycles: HalfCycles,
     motion: Motion,
+    /// What the model does after its last decay.
+    following: Option<Following>,
     passed_over: PassedOver,
     /// What the roll did while it is not yet known how the carriage moved.
     waiting: VecDeque<Swing>,
@@ -48,6 +52,7 @@ impl RunFinder {
             records: Records::default(),
             half_cycles: HalfCycles::default(),
             motion: Motion::default(),
+            following: None,
             passed_over: PassedOver::default(),
             waiting: VecDeque::new(),
             quiet_since_s: None,
@@ -98,7 +103,7 @@ impl RunFinder {
         ended.finish(&mut events);
         events.into_iter().rev().find_map(|event| match event {
             Event::Run(run) => Some(run),
-            Event::Rejected(_) => None,
+            Event::Rejected(_) | Event::Aftermath(_) => None,
         })
     }
 
@@ -106,7 +111,7 @@ impl RunFinder {
     pub fn finish(&mut self, events: &mut Vec<Event>) {
         self.drain(events);
         if let Some(end_s) = self.records.roll.last_s() {
-            self.motion.end(RunEnd::RecordingEnded, end_s, &self.records, &self.limits, events);
+            self.end(RunEnd::RecordingEnded, end_s, events);
         }
         self.passed_over.flush(events);
     }
@@ -151,7 +156,7 @@ impl RunFinder {
     /// A hole in the roll ends whatever was under way at its last sample.
     fn break_off(&mut self, last_s: f64, events: &mut Vec<Event>) {
         self.drain(events);
-        self.motion.end(RunEnd::Gap, last_s, &self.records, &self.limits, events);
+        self.end(RunEnd::Gap, last_s, events);
         self.records.interrupt_roll();
         self.half_cycles = HalfCycles::default();
         (self.quiet_since_s, self.half_period_s) = (None, None);
@@ -183,12 +188,19 @@ impl RunFinder {
     }
 
     fn pass_on(&mut self, events: &mut Vec<Event>) {
-        let (records, limits) = (&self.records, &self.limits);
-        match self.waiting.pop_front() {
-            Some(Swing::Half(half)) => self.motion.half_cycle(half, records, limits, events),
-            Some(Swing::Quiet(at_s)) => self.motion.quiet(at_s, records, limits, events),
+        let Self { records, limits, following, motion, waiting, .. } = self;
+        let mut closer = Closer { records, limits, events, following };
+        match waiting.pop_front() {
+            Some(Swing::Half(half)) => motion.half_cycle(half, &mut closer),
+            Some(Swing::Quiet(at_s)) => motion.quiet(at_s, &mut closer),
             None => {}
         }
+    }
+
+    /// Ends whatever is under way.
+    fn end(&mut self, end: RunEnd, end_s: f64, events: &mut Vec<Event>) {
+        let Self { records, limits, following, motion, .. } = self;
+        motion.end(end, end_s, &mut Closer { records, limits, events, following });
     }
 
     /// Drops samples that no run can need any more.
@@ -199,15 +211,15 @@ impl RunFinder {
         };
         if self.records.n_samples() > N_SAMPLES_MAX {
             self.drain(events);
-            let (records, limits) = (&self.records, &self.limits);
-            self.motion.end(RunEnd::TooLong, now_s, records, limits, events);
+            self.end(RunEnd::TooLong, now_s, events);
         }
         let waiting_s = self.waiting.iter().find_map(|swing| match swing {
             Swing::Half(half) => Some(half.start.time_s),
             Swing::Quiet(_) => None,
         });
         let turn_s = self.half_cycles.turn().map(|turn| turn.time_s);
-        let needed = [self.motion.needed_from_s(), waiting_s, turn_s];
+        let followed_s = self.following.map(|following| following.needed_from_s());
+        let needed = [self.motion.needed_from_s(), followed_s, waiting_s, turn_s];
         let from_s = needed.into_iter().flatten().fold(now_s - KEPT_S, f64::min);
         self.records.forget_before(from_s);
     }
@@ -260,7 +272,7 @@ mod tests {
             .iter()
             .filter_map(|event| match event {
                 Event::Run(run) => Some((run.kind, run.end, run.end_s - run.start_s)),
-                Event::Rejected(_) => None,
+                Event::Rejected(_) | Event::Aftermath(_) => None,
             })
             .collect();
         assert_eq!(runs.len(), 4, "{runs:?}");

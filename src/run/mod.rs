@@ -6,15 +6,18 @@
 //! machine (`motion`) joins half cycles into a decay as long as `decay` finds each one where
 //! the last ones lead, and into a forced run as long as `forced` finds it steady; what the rod
 //! drives without repeating is kept by `driven` and is a forced run too. When a run has ended,
-//! `usable_end` looks for the instant at which the samples left their course.
+//! `usable_end` looks for the instant at which the samples left their course; what the model does
+//! after a decay is followed by `aftermath`.
 //!
 //! Nothing here reads a clock or a file or draws a number, and what is told depends only on the
 //! samples in their order. Memory is bounded: at rest the last 20 s are kept, and a run is closed
 //! after half an hour or two million samples.
 
+mod aftermath;
 mod assembly;
 mod bins;
 mod carriage_pass;
+mod closer;
 mod decay;
 mod drive;
 mod driven;
@@ -129,6 +132,18 @@ pub struct Run {
     pub timing: Timing,
 }
 
+/// What the model did after a decay, left alone until it lay still or somebody touched it: no part
+/// of the run, for it does not decay as its damping alone would have it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Aftermath {
+    /// End of the decay [s], behind which the samples begin.
+    pub run_end_s: f64,
+    /// Roll [rad].
+    pub roll: Series,
+    /// Rod force [N] or exciting moment [N m], if one was recorded.
+    pub drive: Series,
+}
+
 /// A stretch that is not used, and why.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rejection {
@@ -147,4 +162,6 @@ pub enum Event {
     Run(Run),
     /// A stretch will not be used.
     Rejected(Rejection),
+    /// What followed a decay is known.
+    Aftermath(Aftermath),
 }

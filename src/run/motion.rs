@@ -1,18 +1,17 @@
 //! Joins half cycles into decays and forced runs.
 
 use super::Event;
-use super::Limits;
 use super::RunEnd;
 use super::RunKind;
 use super::assembly::Stretch;
 use super::carriage_pass::Passage;
+use super::closer::Closer;
 use super::decay;
 use super::decay::Verdict;
 use super::driven::Driven;
 use super::forced;
 use super::forced::Cycle;
 use super::half_cycles::HalfCycle;
-use super::records::Records;
 use super::ripple::Ripple;
 use super::trust::Trust;
 use super::unused::Cause;
@@ -64,60 +63,47 @@ impl Motion {
     }
 
     /// Takes the next half cycle.
-    pub(super) fn half_cycle(
-        &mut self,
-        half: HalfCycle,
-        records: &Records,
-        limits: &Limits,
-        events: &mut Vec<Event>,
-    ) {
+    pub(super) fn half_cycle(&mut self, half: HalfCycle, closer: &mut Closer) {
         let (start_s, end_s) = (half.start.left_s, half.end.time_s);
-        let passage = records.carriage.passage(start_s, end_s);
-        let drive = records.drive.swing(end_s, half.duration_s());
+        let passage = closer.records.carriage.passage(start_s, end_s);
+        let drive = closer.records.drive.swing(end_s, half.duration_s());
         let cycle = Cycle { half, drive, steady: passage == Passage::Steady };
-        let mut closer = Closer { records, limits, events };
         match (self.state, passage) {
             (State::Decay | State::Forced, Passage::Ends(left_s)) => {
-                self.stop(RunEnd::PassEnded, left_s, &mut closer);
-                self.search(cycle, &mut closer);
+                self.stop(RunEnd::PassEnded, left_s, closer);
+                self.search(cycle, closer);
             }
             (State::Decay | State::Forced, Passage::Changing) => {
-                self.stop(RunEnd::PassEnded, start_s, &mut closer);
-                self.search(cycle, &mut closer);
+                self.stop(RunEnd::PassEnded, start_s, closer);
+                self.search(cycle, closer);
             }
-            (State::Decay, Passage::Steady) => self.decay(cycle, &mut closer),
-            (State::Forced, Passage::Steady) => self.forced(cycle, &mut closer),
-            (State::Searching, _) => self.search(cycle, &mut closer),
+            (State::Decay, Passage::Steady) => self.decay(cycle, closer),
+            (State::Forced, Passage::Steady) => self.forced(cycle, closer),
+            (State::Searching, _) => self.search(cycle, closer),
         }
+        closer.follow(&cycle);
         let begun_s = match self.state {
             State::Searching => self.driven.needed_from_s(),
             _ => self.cycles.first().map(|c| c.half.start.time_s),
         };
         if begun_s.is_some_and(|start_s| end_s - start_s > RUN_MAX_S) {
-            self.end(RunEnd::TooLong, end_s, records, limits, events);
+            self.end(RunEnd::TooLong, end_s, closer);
         }
     }
 
     /// The model is still, the record has a hole, or it ended: whatever was under way ends.
-    pub(super) fn end(
-        &mut self,
-        end: RunEnd,
-        end_s: f64,
-        records: &Records,
-        limits: &Limits,
-        events: &mut Vec<Event>,
-    ) {
-        let mut closer = Closer { records, limits, events };
+    pub(super) fn end(&mut self, end: RunEnd, end_s: f64, closer: &mut Closer) {
         if self.state != State::Searching {
             // The pass may have ended after the last whole half cycle.
             let last_s = self.cycles.last().map_or(end_s, |c| c.half.end.time_s);
-            match records.carriage.passage(last_s, end_s) {
-                Passage::Ends(left_s) => self.stop(RunEnd::PassEnded, left_s, &mut closer),
-                _ => self.stop(end, end_s, &mut closer),
+            match closer.records.carriage.passage(last_s, end_s) {
+                Passage::Ends(left_s) => self.stop(RunEnd::PassEnded, left_s, closer),
+                _ => self.stop(end, end_s, closer),
             }
         }
-        self.close_driven(end, f64::INFINITY, None, &mut closer);
-        self.flush(f64::INFINITY, &mut closer);
+        self.close_driven(end, f64::INFINITY, None, closer);
+        self.flush(f64::INFINITY, closer);
+        closer.leave();
         *self = Self::default();
         if end == RunEnd::Gap {
             self.trust = Trust::behind_hole();
@@ -125,17 +111,11 @@ impl Motion {
     }
 
     /// The model is still, or held, at `at_s`.
-    pub(super) fn quiet(
-        &mut self,
-        at_s: f64,
-        records: &Records,
-        limits: &Limits,
-        events: &mut Vec<Event>,
-    ) {
+    pub(super) fn quiet(&mut self, at_s: f64, closer: &mut Closer) {
         let halves = self.halves();
         let due_rad = if halves.is_empty() { 0.0 } else { decay::due_rad(&halves) };
         // A roll that would have shown, had it gone on.
-        let ripple = records.ripple();
+        let ripple = closer.records.ripple();
         let seen_rad = (1.5 * ripple.lost_below_rad).max(ripple.quiet_range_rad());
         let end = match self.state {
             State::Forced => RunEnd::ExcitationChanged,
@@ -143,7 +123,7 @@ impl Motion {
             _ if due_rad > seen_rad => RunEnd::Caught,
             _ => RunEnd::LostInNoise,
         };
-        self.end(end, at_s, records, limits, events);
+        self.end(end, at_s, closer);
     }
 
     fn halves(&self) -> Vec<HalfCycle> {
@@ -207,8 +187,7 @@ impl Motion {
         let Some(closed) = self.driven.close(until_s, next, closer.records) else { return };
         self.unused.clone_from(&closed.before);
         self.flush(closed.start_s(), closer);
-        let event = closed.stretch(end).close(closer.records, closer.limits);
-        closer.events.push(event);
+        closer.tell(&closed.stretch(end));
         let end_s = closed.end_s();
         self.cycles.retain(|c| c.half.start.time_s >= end_s - 1e-9);
         self.trust.run_ended(end, closed.last_amplitude_rad());
@@ -347,8 +326,7 @@ impl Motion {
             return Vec::new();
         }
         self.flush(start_s, closer);
-        let event = stretch.close(closer.records, closer.limits);
-        closer.events.push(event);
+        closer.tell(&stretch);
         self.rod_on = kind == RunKind::Forced;
         self.rod_left_s = left_s.filter(|_| self.rod_on);
         match kind {
@@ -361,6 +339,7 @@ impl Motion {
         self.unused = Some(Unused::new(end_s, Cause::After(end, why)));
         let n_used = cycles.iter().take_while(|c| c.half.start.time_s < end_s - 1e-9).count();
         let behind = cycles.split_off(n_used);
+        behind.iter().for_each(|cycle| closer.follow(cycle));
         if n_used < forced::N_SETTLED {
             // Each round must use up some, so that rounds come to an end.
             self.set_aside(&behind, end_s);
@@ -388,11 +367,4 @@ impl Motion {
             .events
             .extend(self.unused.take().and_then(|unused| unused.close(end_s)).map(Event::Rejected));
     }
-}
-
-/// What closing a run takes.
-struct Closer<'a> {
-    records: &'a Records,
-    limits: &'a Limits,
-    events: &'a mut Vec<Event>,
 }

@@ -1,0 +1,78 @@
+//! Follows what the model does after a decay until it lies still or somebody touches it.
+
+use super::Aftermath;
+use super::decay;
+use super::forced::Cycle;
+use super::records::Records;
+use super::ripple::Ripple;
+
+/// Longest time that is followed [s]: the waves of a tank come back within it.
+const FOLLOWED_S: f64 = 60.0;
+/// Half cycles above the noise that make an aftermath worth a look.
+const N_SHOWN: usize = 2;
+/// Times of the smallest roll that stands out of the noise from which a half cycle counts.
+const SHOWN: f64 = 2.0;
+/// Share of the amplitude at release that only a hand reaches again.
+const STRUCK: f64 = 0.9;
+/// The same of a half cycle that begins with a hold or lasts as no half cycle of the model does.
+const TOUCHED: f64 = 0.15;
+/// Change of half period that a beat between two motions makes while both are large [-].
+const PERIOD_CHANGE: f64 = 0.4;
+
+/// The roll after a decay, as far as it is followed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Following {
+    run_end_s: f64,
+    /// End of the last half cycle that was the model's own [s].
+    end_s: f64,
+    released_rad: f64,
+    half_period_s: f64,
+    n_shown: usize,
+}
+
+impl Following {
+    /// Behind a decay of these half cycles that ended at `run_end_s`.
+    pub(super) fn behind(used: &[Cycle], run_end_s: f64) -> Option<Self> {
+        let halves: Vec<_> = used.iter().map(|cycle| cycle.half).collect();
+        Some(Self {
+            run_end_s,
+            end_s: run_end_s,
+            released_rad: halves.first()?.amplitude_rad(),
+            half_period_s: decay::half_period_s(&halves),
+            n_shown: 0,
+        })
+    }
+
+    /// Time [s] from which samples are still needed.
+    pub(super) fn needed_from_s(&self) -> f64 {
+        self.run_end_s
+    }
+
+    /// Takes the next half cycle; whether the model is still left alone.
+    pub(super) fn goes_on(&mut self, cycle: &Cycle, ripple: Ripple) -> bool {
+        let half = &cycle.half;
+        if half.end.time_s <= self.end_s {
+            return true;
+        }
+        let amplitude_rad = half.amplitude_rad();
+        let off = (half.duration_s() / self.half_period_s - 1.0).abs();
+        let is_odd = half.is_from_hold() || off > PERIOD_CHANGE;
+        let most_rad = if is_odd { TOUCHED } else { STRUCK } * self.released_rad;
+        let is_late = half.end.time_s > self.run_end_s + FOLLOWED_S;
+        if cycle.is_driven() || !cycle.steady || amplitude_rad > most_rad || is_late {
+            return false;
+        }
+        self.n_shown += usize::from(amplitude_rad > SHOWN * ripple.lost_below_rad);
+        self.end_s = half.end.time_s;
+        true
+    }
+
+    /// What was followed, if it stands out of the noise.
+    pub(super) fn close(self, records: &Records) -> Option<Aftermath> {
+        let from_s = self.run_end_s.next_up();
+        let roll = records.roll.series(from_s, self.end_s);
+        let drive = records.drive.track.series(from_s, self.end_s);
+        let is_shown = self.n_shown >= N_SHOWN && !roll.time_s.is_empty();
+        is_shown.then_some(Aftermath { run_end_s: self.run_end_s, roll, drive })
+    }
+}

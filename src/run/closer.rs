@@ -1,0 +1,49 @@
+//! What closing a run takes, and where it is told.
+
+use super::Event;
+use super::Limits;
+use super::RunEnd;
+use super::RunKind;
+use super::aftermath::Following;
+use super::assembly::Stretch;
+use super::forced::Cycle;
+use super::records::Records;
+
+/// The channels, the limits, and whoever is told.
+pub(super) struct Closer<'a> {
+    pub(super) records: &'a Records,
+    pub(super) limits: &'a Limits,
+    pub(super) events: &'a mut Vec<Event>,
+    /// What the model does after its last decay.
+    pub(super) following: &'a mut Option<Following>,
+}
+
+impl Closer<'_> {
+    /// Tells the run that a stretch makes, or why it makes none; what comes after a decay is
+    /// followed, unless it is part of what came after an earlier one.
+    pub(super) fn tell(&mut self, stretch: &Stretch<'_>) {
+        let event = stretch.close(self.records, self.limits);
+        if let Event::Run(run) = &event {
+            let is_left_alone =
+                matches!(run.end, RunEnd::LostInNoise | RunEnd::Caught | RunEnd::ReStruck);
+            if run.kind == RunKind::Decay && is_left_alone && self.following.is_none() {
+                *self.following = Following::behind(stretch.used(), run.end_s);
+            }
+        }
+        self.events.push(event);
+    }
+
+    /// Follows the model through its next half cycle.
+    pub(super) fn follow(&mut self, cycle: &Cycle) {
+        let ripple = self.records.ripple();
+        if self.following.as_mut().is_some_and(|following| !following.goes_on(cycle, ripple)) {
+            self.leave();
+        }
+    }
+
+    /// Follows no further.
+    pub(super) fn leave(&mut self) {
+        let followed = self.following.take().and_then(|following| following.close(self.records));
+        self.events.extend(followed.map(Event::Aftermath));
+    }
+}
