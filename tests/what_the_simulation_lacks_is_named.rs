@@ -4,10 +4,10 @@ use std::fs;
 use std::path::PathBuf;
 
 use rolltank::campaign;
-use rolltank::diagnosis::{Diagnosis, Observation, Verdict, diagnose};
+use rolltank::diagnosis::{Diagnosis, Gathered, Observation, Verdict, diagnose};
 use rolltank::model::effects;
 use rolltank::model::model_file::ModelFile;
-use rolltank::pipeline::{self, Options};
+use rolltank::pipeline::{self, Learnt, Options};
 use rolltank::report::{DIAGNOSIS_SCHEMA, diagnosis_json};
 use serde_json::Value;
 
@@ -160,7 +160,9 @@ fn kvlcc2(to_froude: f64) -> Option<Diagnosis> {
         Ok(())
     })
     .expect("the recordings can be read");
-    Some(diagnose(runs, Vec::new(), &campaign.tank).expect("there is a run"))
+    Some(
+        diagnose(Gathered { runs, ..Gathered::default() }, &campaign.tank).expect("there is a run"),
+    )
 }
 
 #[test]

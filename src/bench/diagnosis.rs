@@ -5,7 +5,7 @@ use std::path::Path;
 use super::speed::{Figure, figure};
 use super::stopwatch::{fastest_s, timed};
 use crate::campaign;
-use crate::diagnosis::{Observation, diagnose};
+use crate::diagnosis::{Gathered, Observation, diagnose};
 use crate::pipeline::{self, Learnt, Options};
 use crate::tank::{Scenario, write_campaign};
 
@@ -37,10 +37,13 @@ pub fn of_twelve_passes(folder: &Path) -> Result<Vec<Figure>, String> {
     .map_err(|error| error.to_string())?;
     let first = runs.first().ok_or("no run was found in the twelve passes")?.clone();
     let n_runs = runs.len();
-    let (all_s, diagnosis) = timed(|| diagnose(runs, Vec::new(), &campaign.tank));
+    let (all_s, diagnosis) =
+        timed(|| diagnose(Gathered { runs, ..Gathered::default() }, &campaign.tank));
     let named: Vec<&str> = diagnosis.iter().flat_map(|d| &d.causes).map(|c| c.effect).collect();
     let named = if named.is_empty() { "no cause".to_owned() } else { named.join(", ") };
-    let one_s = fastest_s(REPEATS, || diagnose(vec![first.clone()], Vec::new(), &campaign.tank));
+    let one_s = fastest_s(REPEATS, || {
+        diagnose(Gathered { runs: vec![first.clone()], ..Gathered::default() }, &campaign.tank)
+    });
     Ok(vec![
         figure(
             format!("diagnosis of {n_runs} runs, decays and forced, on all cores: {named}"),

@@ -49,11 +49,13 @@ pub(super) fn best(
         return Best::None;
     }
     let (before, after) = (leftovers(survey, &current.fit), leftovers(survey, &best.settled.fit));
-    if !explains_enough(&before, &after, log_bayes_factor) {
+    let removed = excess(&before) - excess(&after);
+    // Beside another, what makes the runs agree better need not explain what that one leaves.
+    let is_beside = !known.is_empty() && !is_of_leftover(removed, log_bayes_factor);
+    if !is_beside && !explains_enough(&before, &after, log_bayes_factor) {
         return Best::ExplainsTooLittle;
     }
-    let removed = excess(&before) - excess(&after);
-    let found = sure_share(&before);
+    let found = (!is_beside).then(|| sure_share(&before));
     let equivalent_to = tried[1..]
         .iter()
         .filter(|one| !contains(one.id, best.id))
@@ -86,11 +88,17 @@ fn prefer_the_part(tried: &mut [Tried]) {
 fn is_crumb_of(known: &Entered, newest: &Entered, settled: &Settled) -> bool {
     let is_of_each_run =
         settled.fit.extensions.last().is_some_and(|extension| extension.effect.scope == Scope::Run);
+    let is_little = newest.log_bayes_factor < CRUMB_OF_EVIDENCE * known.log_bayes_factor;
     let share = if is_of_each_run { CRUMB_OF_EACH_RUN } else { CRUMB };
-    let is_of_leftover = newest.removed > OF_LEFTOVER * newest.log_bayes_factor;
-    is_approximate(known.id)
-        && ((is_of_leftover && newest.removed < share * known.removed)
-            || newest.log_bayes_factor < CRUMB_OF_EVIDENCE * known.log_bayes_factor)
+    let is_of_form = is_approximate(known.id)
+        && is_of_leftover(newest.removed, newest.log_bayes_factor)
+        && (newest.removed < share * known.removed || is_little);
+    is_of_form || (is_of_each_run && is_little)
+}
+
+/// Whether what an effect takes of what is left is what speaks for it.
+fn is_of_leftover(removed: f64, log_bayes_factor: f64) -> bool {
+    removed > OF_LEFTOVER * log_bayes_factor
 }
 
 /// Whether an effect takes its part of what is left for sure, or gains as much in making the runs

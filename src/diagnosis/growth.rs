@@ -27,8 +27,9 @@ pub(super) struct Entered {
     pub(super) log_bayes_factor: f64,
     /// What it removes of what is left beyond the noise, in units of its variance.
     pub(super) removed: f64,
-    /// Sum over channels of the shares that were left for sure before it entered [-].
-    pub(super) found: f64,
+    /// Sum over channels of the shares that were left for sure before it entered [-]; none where
+    /// it only makes the runs agree better.
+    pub(super) found: Option<f64>,
     pub(super) equivalent_to: Vec<&'static str>,
 }
 
@@ -65,7 +66,8 @@ pub(super) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
             with_its_noise(survey, stem.fit.clone(), &white(survey.noise(&stem.fit)));
         let before = leftovers(survey, &base_fit);
         entered = stem.entered;
-        entered.iter_mut().for_each(|known| known.found = sure_share(&before));
+        let found = sure_share(&before);
+        entered.iter_mut().filter_map(|known| known.found.as_mut()).for_each(|of| *of = found);
         ranking = stem.ranking;
     }
     while entered.len() < MOST {

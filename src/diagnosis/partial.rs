@@ -15,5 +15,6 @@ pub(super) fn n_parts(entered: &[Entered], left: &[Leftover]) -> usize {
     }
     let share = sure_share(left);
     let others = entered.iter().skip(1).rev();
-    others.take_while(|effect| share > MOST_LEFT * effect.found).count()
+    let is_part = |effect: &&Entered| effect.found.is_some_and(|of| share > MOST_LEFT * of);
+    others.take_while(is_part).count()
 }

@@ -7,6 +7,7 @@ use super::leftover::Leftover;
 use super::next_run::{NextRun, next_run};
 use super::partial::{MOST_LEFT, n_parts};
 use super::records::Shown;
+use super::reversed::{self, Reversed};
 use super::settle::Settled;
 use super::survey::{N_LAW, Survey};
 use super::unexplained::{Unexplained, unexplained};
@@ -14,6 +15,7 @@ use crate::campaign::Tank;
 use crate::inverse::estimate::Estimate;
 use crate::model::effects;
 use crate::model::model_file::{ConditionModel, EffectModel, ModelFile};
+use crate::run::RunKind;
 
 /// The verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,7 +112,12 @@ pub struct Diagnosis {
 }
 
 /// What a grown model says of the runs that it has grown on.
-pub(super) fn told(survey: &Survey, grown: &Grown, tank: &Tank) -> Diagnosis {
+pub(super) fn told(
+    survey: &Survey,
+    grown: &Grown,
+    reversed: &[Reversed],
+    tank: &Tank,
+) -> Diagnosis {
     let shown = Shown::of(survey);
     let is_untold = |left: &Leftover| !shown.tells(survey, &left.run, left.frequency_rad_s);
     let left_before = leftovers(survey, &grown.base.fit);
@@ -128,6 +135,9 @@ pub(super) fn told(survey: &Survey, grown: &Grown, tank: &Tank) -> Diagnosis {
         suspects.splice(0..0, causes.drain(..).map(|cause| cause.effect));
     }
     causes.extend(shown.causes());
+    if survey.runs.iter().any(|run| run.at.kind == RunKind::Forced) {
+        causes.extend(reversed::cause(reversed));
+    }
     let verdict = if untold {
         Verdict::Unexplained
     } else if causes.iter().any(|cause| !cause.equivalent_to.is_empty()) {

@@ -82,7 +82,11 @@ impl Reporter<'_> {
                     self.diagnoser.ask();
                     continue;
                 }
-                LiveStep::Refused { found, reason } => {
+                LiveStep::Refused { found, reason, reversed } => {
+                    if let Some(reversed) = &reversed {
+                        self.diagnoser.hear(Learnt::Reversed(reversed), self.campaign);
+                        self.diagnoser.ask();
+                    }
                     let at_ns = self.clock.now_ns();
                     let told = self.provisional.replaced(&found);
                     Some(Reported { found, outcome: Err(reason), at_ns, told })

@@ -34,6 +34,11 @@ impl<'c> Collector<'c> {
         self.results.runs.len()
     }
 
+    /// The campaign.
+    pub(super) fn campaign(&self) -> &'c Campaign {
+        self.campaign
+    }
+
     /// Name of a recording.
     pub(super) fn recording(&self, index: usize) -> &str {
         &self.campaign.recordings[index].name

@@ -6,10 +6,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::Learnt;
 use crate::campaign::Campaign;
-use crate::diagnosis::{self, Diagnosis, Observation};
+use crate::diagnosis::{self, Diagnosis, Gathered, Observation, Reversed};
 use crate::judgement::{Judgements, Place};
 use crate::results::IdentifiedRun;
-use crate::run::{Aftermath, RunKind, Series};
+use crate::run::{Aftermath, Run, RunKind, Series};
 
 /// Most runs that are diagnosed together: more repeat each other, and a diagnosis takes time with
 /// their square.
@@ -25,6 +25,7 @@ const NEAR: [f64; 2] = [0.02, 0.03];
 #[derive(Debug, Clone, Default)]
 pub struct Observed {
     observations: Vec<Seen>,
+    reversed: Vec<Reversed>,
     left_out: Vec<String>,
     /// The last runs, of which it is not known yet what came after them.
     last: VecDeque<LastHeard>,
@@ -69,12 +70,32 @@ fn append(series: &mut Series, later: &Series) {
     series.value.extend_from_slice(&later.value);
 }
 
+/// Lets a run begin with the release before it.
+fn begin_with(run: &mut IdentifiedRun, release: &Aftermath) {
+    let Series { time_s, value } = &release.roll;
+    run.run.start_s = time_s[0];
+    run.run.roll = release.roll.clone();
+    run.run.drive = release.drive.clone();
+    let known = &mut run.identification;
+    let rolling_rad_s = known.natural_frequency_rad_s.mean;
+    // A straight line through the first twentieth of a period is near enough to start from.
+    let line_s = 0.05 * TAU / rolling_rad_s;
+    let n = time_s.partition_point(|t| *t < time_s[0] + line_s).clamp(2, time_s.len());
+    let rate = (value[n - 1] - value[0]) / (time_s[n - 1] - time_s[0]).max(1e-6);
+    known.initial_roll_rad.mean = value[0];
+    known.initial_roll_rate_rad_per_s.mean = rate;
+}
+
 impl Observed {
     /// Takes a run whose histories are still with it, or what came after one.
     pub fn hear(&mut self, learnt: Learnt<'_>, campaign: &Campaign) {
         match learnt {
             Learnt::Run(run, _) => self.hear_run(run, campaign),
             Learnt::Aftermath(recording, after) => self.hear_after(recording, after, campaign),
+            Learnt::Reversed(reversed) => {
+                self.reversed.push(reversed.clone());
+                self.n_heard += 1;
+            }
         }
     }
 
@@ -105,24 +126,39 @@ impl Observed {
         }
     }
 
-    /// Joins what the model did after a decay to it, later runs in it included.
+    /// Joins what the model did after a release to the run that began with it, later runs in it
+    /// included; where none began with it, the first of those stands for the release.
     fn hear_after(&mut self, recording: &str, after: &Aftermath, campaign: &Campaign) {
-        let end_s = after.roll.time_s.last().copied().unwrap_or(after.run_end_s);
-        let ends = |end_s: f64| end_s.to_bits() == after.run_end_s.to_bits();
-        let is_of = |last: &LastHeard| last.run.recording == recording && ends(last.run.run.end_s);
-        let Some(at) = self.last.iter().position(is_of) else { return };
-        let LastHeard { mut run, order } = self.last[at].clone();
-        append(&mut run.run.roll, &after.roll);
-        append(&mut run.run.drive, &after.drive);
-        for seen in &mut self.observations {
-            let place = &seen.place;
-            if place.recording == recording && ends(place.end_s) {
-                seen.whole = Observation::new(&run, campaign, order).ok();
-            }
-            seen.is_within |=
-                place.recording == recording && (after.run_end_s..end_s).contains(&place.start_s);
-        }
         self.n_heard += 1;
+        let [Some(first_s), Some(last_s)] = [after.roll.time_s.first(), after.roll.time_s.last()]
+        else {
+            return;
+        };
+        let lies_within = |start_s: f64| (*first_s..*last_s).contains(&start_s);
+        let is_its_own = |run: &Run| match after.run_end_s {
+            Some(end_s) => run.end_s.to_bits() == end_s.to_bits(),
+            None => run.kind == RunKind::Decay && lies_within(run.start_s),
+        };
+        let is_of =
+            |last: &&LastHeard| last.run.recording == recording && is_its_own(&last.run.run);
+        let Some(LastHeard { run, order }) = self.last.iter().find(is_of) else { return };
+        let (id, mut whole) = (run.id.clone(), run.clone());
+        match after.run_end_s {
+            Some(_) => {
+                append(&mut whole.run.roll, &after.roll);
+                append(&mut whole.run.drive, &after.drive);
+            }
+            None => begin_with(&mut whole, after),
+        }
+        let whole = Observation::new(&whole, campaign, *order);
+        for seen in &mut self.observations {
+            if seen.alone.id == id {
+                seen.whole = whole.clone().ok();
+            } else {
+                seen.is_within |=
+                    seen.place.recording == recording && lies_within(seen.place.start_s);
+            }
+        }
     }
 
     /// The same without the runs that were rejected by hand.
@@ -162,8 +198,9 @@ impl Observed {
             let whole = self.observations.iter().filter(|seen| has_more && !seen.is_within);
             let whole = whole.map(|seen| seen.whole.as_ref().unwrap_or(&seen.alone).clone());
             let whole = whole.collect();
-            let alone = self.observations.into_iter().map(|seen| seen.alone).collect();
-            diagnosis::diagnose(alone, whole, &campaign.tank)
+            let runs = self.observations.into_iter().map(|seen| seen.alone).collect();
+            let gathered = Gathered { runs, whole, reversed: self.reversed };
+            diagnosis::diagnose(gathered, &campaign.tank)
         }));
         diagnosed.unwrap_or_else(|_| {
             tracing::error!(

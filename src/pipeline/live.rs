@@ -14,6 +14,7 @@ use super::listening::{FoundRun, Heard, Listening, Unheard};
 use super::so_far::RunSoFar;
 use super::workers::Workers;
 use crate::campaign::Campaign;
+use crate::diagnosis::Reversed;
 use crate::results::{IdentifiedRun, Overview, Results};
 use crate::run::{Aftermath, Rejection};
 
@@ -59,6 +60,8 @@ pub enum LiveStep<'r> {
         found: FoundRun,
         /// Why not.
         reason: String,
+        /// Where it is for the sign of its force.
+        reversed: Option<Reversed>,
     },
     /// What the model did after a decay of the recording is known.
     Aftermath {
@@ -160,10 +163,14 @@ impl LiveResults<'_> {
             Heard::Run { index, found, identified, overview } => {
                 // A worker that panicked has no answer, and the scope passes its panic on.
                 let identified = identified.recv().ok()?;
+                let reversed = identified.reversed(self.collector.campaign());
                 let reason = identified.identification.as_ref().err().cloned();
                 match self.collector.keep(index, identified, &found.brought) {
                     Some(run) => LiveStep::Identified { found, run, overview },
-                    None => LiveStep::Refused { found, reason: reason.unwrap_or_default() },
+                    None => {
+                        let reason = reason.unwrap_or_default();
+                        LiveStep::Refused { found, reason, reversed }
+                    }
                 }
             }
             Heard::Rejected { index, rejection } => {

@@ -30,6 +30,7 @@ use std::thread;
 use replay::Note;
 
 use crate::campaign::Campaign;
+use crate::diagnosis::Reversed;
 use crate::inverse::identification::Method;
 use crate::results::{IdentifiedRun, Overview, Results};
 use crate::run::Aftermath;
@@ -101,6 +102,8 @@ pub enum Learnt<'l> {
     Run(&'l IdentifiedRun, &'l Overview),
     /// What the model did after a decay of the recording.
     Aftermath(&'l str, &'l Aftermath),
+    /// A forced run was refused for the sign of its force.
+    Reversed(&'l Reversed),
 }
 
 /// An error of whoever listens to the runs.
@@ -141,6 +144,10 @@ pub fn replay(
                 Heard::Run { index, found, identified, overview } => {
                     // A worker that panicked has no answer, and the scope passes its panic on.
                     let Ok(identified) = identified.recv() else { break };
+                    if let Some(reversed) = identified.reversed(campaign) {
+                        let recording = &campaign.recordings[index].name;
+                        listener(Learnt::Reversed(&reversed)).map_err(of_listener(recording))?;
+                    }
                     if let Some(run) = collector.keep(index, identified, &found.brought) {
                         listener(Learnt::Run(run, &overview)).map_err(of_listener(&run.id))?;
                         if !options.keep_histories {

@@ -5,6 +5,8 @@ use std::sync::{Arc, Mutex};
 use std::thread::{self, Scope};
 
 use super::QUEUE_LENGTH;
+use crate::campaign::Campaign;
+use crate::diagnosis::Reversed;
 use crate::inverse::identification::Identification;
 use crate::inverse::{self, Setting};
 use crate::run::Run;
@@ -56,6 +58,13 @@ impl Workers {
         let refused = Identified { run, identification: Err(reason.to_owned()), setting: None };
         reply.send(refused).expect("there is room for one answer");
         answer
+    }
+}
+
+impl Identified {
+    /// The run as one whose force has the wrong sign, where that is why it says nothing.
+    pub(super) fn reversed(&self, campaign: &Campaign) -> Option<Reversed> {
+        self.identification.as_ref().err().and_then(|_| Reversed::of(&self.run, campaign))
     }
 }
 

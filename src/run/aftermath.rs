@@ -1,7 +1,9 @@
-//! Follows what the model does after a decay until it lies still or somebody touches it.
+//! Follows what the model does after its release until it lies still or somebody touches it.
 
 use super::Aftermath;
+use super::Run;
 use super::decay;
+use super::decay::START_RAD;
 use super::forced::Cycle;
 use super::records::Records;
 use super::ripple::Ripple;
@@ -22,7 +24,10 @@ const PERIOD_CHANGE: f64 = 0.4;
 /// The roll after a decay, as far as it is followed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Following {
-    run_end_s: f64,
+    /// Where it begins [s].
+    from_s: f64,
+    /// End of the decay before it [s], where that is a run.
+    run_end_s: Option<f64>,
     /// End of the last half cycle that was the model's own [s].
     end_s: f64,
     released_rad: f64,
@@ -31,11 +36,12 @@ pub(super) struct Following {
 }
 
 impl Following {
-    /// Behind a decay of these half cycles that ended at `run_end_s`.
+    /// Behind the decay of these half cycles that ended at `run_end_s`.
     pub(super) fn behind(used: &[Cycle], run_end_s: f64) -> Option<Self> {
         let halves: Vec<_> = used.iter().map(|cycle| cycle.half).collect();
         Some(Self {
-            run_end_s,
+            from_s: run_end_s.next_up(),
+            run_end_s: Some(run_end_s),
             end_s: run_end_s,
             released_rad: halves.first()?.amplitude_rad(),
             half_period_s: decay::half_period_s(&halves),
@@ -43,9 +49,29 @@ impl Following {
         })
     }
 
+    /// From the release with which a half cycle begins, if it begins with one.
+    pub(super) fn released(cycle: &Cycle, records: &Records) -> Option<Self> {
+        let (half, ripple) = (&cycle.half, records.ripple());
+        let is_large = half.amplitude_rad() > (2.0 * START_RAD).max(5.0 * ripple.lost_below_rad);
+        let is_release = half.is_from_hold() && is_large && cycle.steady && !cycle.is_driven();
+        is_release.then(|| Self {
+            from_s: decay::start_s(half, &records.roll, ripple),
+            run_end_s: None,
+            end_s: half.end.time_s,
+            released_rad: half.amplitude_rad(),
+            half_period_s: half.duration_from_hold_s(),
+            n_shown: 0,
+        })
+    }
+
+    /// Whether a decay is the one that this release began: a hand may be on its first period.
+    pub(super) fn is_begun_by(&self, run: &Run) -> bool {
+        self.run_end_s.is_none() && run.start_s < self.from_s + 2.0 * self.half_period_s
+    }
+
     /// Time [s] from which samples are still needed.
     pub(super) fn needed_from_s(&self) -> f64 {
-        self.run_end_s
+        self.from_s
     }
 
     /// Takes the next half cycle; whether the model is still left alone.
@@ -58,7 +84,7 @@ impl Following {
         let off = (half.duration_s() / self.half_period_s - 1.0).abs();
         let is_odd = half.is_from_hold() || off > PERIOD_CHANGE;
         let most_rad = if is_odd { TOUCHED } else { STRUCK } * self.released_rad;
-        let is_late = half.end.time_s > self.run_end_s + FOLLOWED_S;
+        let is_late = half.end.time_s > self.from_s + FOLLOWED_S;
         if cycle.is_driven() || !cycle.steady || amplitude_rad > most_rad || is_late {
             return false;
         }
@@ -69,9 +95,8 @@ impl Following {
 
     /// What was followed, if it stands out of the noise.
     pub(super) fn close(self, records: &Records) -> Option<Aftermath> {
-        let from_s = self.run_end_s.next_up();
-        let roll = records.roll.series(from_s, self.end_s);
-        let drive = records.drive.track.series(from_s, self.end_s);
+        let roll = records.roll.series(self.from_s, self.end_s);
+        let drive = records.drive.track.series(self.from_s, self.end_s);
         let is_shown = self.n_shown >= N_SHOWN && !roll.time_s.is_empty();
         is_shown.then_some(Aftermath { run_end_s: self.run_end_s, roll, drive })
     }

@@ -14,30 +14,35 @@ pub(super) struct Closer<'a> {
     pub(super) records: &'a Records,
     pub(super) limits: &'a Limits,
     pub(super) events: &'a mut Vec<Event>,
-    /// What the model does after its last decay.
+    /// What the model does after its last release.
     pub(super) following: &'a mut Option<Following>,
 }
 
 impl Closer<'_> {
     /// Tells the run that a stretch makes, or why it makes none; what comes after a decay is
-    /// followed, unless it is part of what came after an earlier one.
+    /// followed, unless it is part of what came after an earlier release.
     pub(super) fn tell(&mut self, stretch: &Stretch<'_>) {
         let event = stretch.close(self.records, self.limits);
-        if let Event::Run(run) = &event {
+        if let Event::Run(run) = &event
+            && run.kind == RunKind::Decay
+            && self.following.is_none_or(|following| following.is_begun_by(run))
+        {
             let is_left_alone =
                 matches!(run.end, RunEnd::LostInNoise | RunEnd::Caught | RunEnd::ReStruck);
-            if run.kind == RunKind::Decay && is_left_alone && self.following.is_none() {
-                *self.following = Following::behind(stretch.used(), run.end_s);
-            }
+            let behind = || Following::behind(stretch.used(), run.end_s);
+            *self.following = is_left_alone.then(behind).flatten();
         }
         self.events.push(event);
     }
 
-    /// Follows the model through its next half cycle.
+    /// Follows the model through its next half cycle, which may begin with its release.
     pub(super) fn follow(&mut self, cycle: &Cycle) {
         let ripple = self.records.ripple();
         if self.following.as_mut().is_some_and(|following| !following.goes_on(cycle, ripple)) {
             self.leave();
+        }
+        if self.following.is_none() {
+            *self.following = Following::released(cycle, self.records);
         }
     }
 

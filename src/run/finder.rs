@@ -34,7 +34,7 @@ pub struct RunFinder {
     records: Records,
     half_cycles: HalfCycles,
     motion: Motion,
-    /// What the model does after its last decay.
+    /// What the model does after its last release.
     following: Option<Following>,
     passed_over: PassedOver,
     /// What the roll did while it is not yet known how the carriage moved.

@@ -132,12 +132,13 @@ pub struct Run {
     pub timing: Timing,
 }
 
-/// What the model did after a decay, left alone until it lay still or somebody touched it: no part
-/// of the run, for it does not decay as its damping alone would have it.
+/// What the model did after its release, left alone until it lay still or somebody touched it, as
+/// far as no run holds it: it does not decay as its damping alone would have it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Aftermath {
-    /// End of the decay [s], behind which the samples begin.
-    pub run_end_s: f64,
+    /// End of the decay [s] behind which it begins; none where it begins with the release, because
+    /// too little of a decay came first to make a run.
+    pub run_end_s: Option<f64>,
     /// Roll [rad].
     pub roll: Series,
     /// Rod force [N] or exciting moment [N m], if one was recorded.
