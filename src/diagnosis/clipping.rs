@@ -26,8 +26,7 @@ fn stuck(values: &[f64]) -> Option<Clip> {
     let step_rad = steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
     // Chance that noise leaves a reading where it was.
     let alike = step_rad / (2.0 * std::f64::consts::PI.sqrt() * noise_rad);
-    let tail = &values[values.len() - (values.len() / 5).max(1)..];
-    let middle = tail.iter().sum::<f64>() / tail.len() as f64;
+    let middle = middle(values);
     let end_of = |sign: f64| -> Clip {
         let end = values.iter().map(|v| sign * (v - middle)).fold(f64::NEG_INFINITY, f64::max);
         let is_there = |value: &f64| sign * (value - middle) >= end;
@@ -44,12 +43,21 @@ fn stuck(values: &[f64]) -> Option<Clip> {
     (surest.log_bayes_factor > STUCK && alike < 0.5 && is_wide).then_some(surest)
 }
 
+/// What a channel reads at rest, by the end of a record: that of a forced run holds no whole number
+/// of periods.
+pub(super) fn middle(values: &[f64]) -> f64 {
+    let tail = &values[values.len() - (values.len() / 5).max(1)..];
+    let range = tail.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [low.min(*value), high.max(*value)]
+    });
+    0.5 * (range[0] + range[1])
+}
+
 /// Crests that are flat at one level.
 fn flat_crests(roll: &Series, rolling_rad_s: f64) -> Option<Clip> {
     let values = &roll.value;
     let noise_rad = rough_noise(values);
-    let tail = &values[values.len() - (values.len() / 5).max(1)..];
-    let middle = tail.iter().sum::<f64>() / tail.len() as f64;
+    let middle = middle(values);
     let top = values.iter().map(|v| (v - middle).abs()).fold(0.0, f64::max) - 2.0 * noise_rad;
     // Of each side, for the middle is not known well enough to compare them.
     let mut levels: [Vec<(f64, f64)>; 2] = [Vec::new(), Vec::new()];

@@ -1,5 +1,6 @@
 //! One run as the diagnosis sees it: thinned records, circumstances, and where a fit starts.
 
+use super::clipping::middle;
 use super::facts;
 use crate::campaign::Campaign;
 use crate::inverse::forced::response::SteadyResponse;
@@ -174,23 +175,51 @@ impl Observation {
         }
     }
 
+    /// Half of the range of its roll, wherever its middle is [rad].
+    pub(super) fn half_range_rad(&self) -> f64 {
+        let high = self.roll_rad.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let low = self.roll_rad.iter().copied().fold(f64::INFINITY, f64::min);
+        0.5 * (high - low)
+    }
+
     /// Lets go of readings at the end of the channel's range, which are none of the roll, unless
-    /// another run read beyond: then it was no end.
-    pub(super) fn read_within(&mut self, largest_rad: f64) {
-        let Some(clip) = self.facts.clip else { return };
+    /// another run read beyond: then it was no end. Whether enough is left: a channel that reads its
+    /// end most of the time leaves no run to speak of.
+    pub(super) fn read_within(&mut self, largest_rad: f64) -> bool {
+        let Some(clip) = self.facts.clip else { return true };
+        tracing::debug!(run = self.id, level = clip.level_rad, largest_rad, "clipped");
         if largest_rad > 1.02 * clip.level_rad {
             self.facts.clip = None;
-            return;
+            return true;
         }
-        let mean_rad = self.roll_rad.iter().sum::<f64>() / self.roll_rad.len() as f64;
+        let mean_rad = middle(&self.roll_rad);
         let end_rad = clip.level_rad - 3.0 * self.rough_noise[0];
-        let read = |(t, r): (&f64, &f64)| ((r - mean_rad).abs() < end_rad).then_some((*t, *r));
-        let within: (Vec<f64>, Vec<f64>) =
-            self.roll_time_s.iter().zip(&self.roll_rad).filter_map(read).unzip();
-        // A channel that reads its end most of the time leaves no run to speak of.
-        if 2 * within.0.len() > self.roll_rad.len() {
-            (self.roll_time_s, self.roll_rad) = within;
+        let is_read = |r: &f64| (r - mean_rad).abs() < end_rad;
+        // A value beside one at the end is the mean of some readings there too.
+        let n = self.roll_rad.len();
+        let beside = |i: usize| &self.roll_rad[i.saturating_sub(1)..(i + 2).min(n)];
+        let kept: Vec<usize> = (0..n).filter(|i| beside(*i).iter().all(is_read)).collect();
+        let of = |values: &[f64]| kept.iter().map(|i| values[*i]).collect::<Vec<f64>>();
+        let within = (of(&self.roll_time_s), of(&self.roll_rad));
+        let is_enough = 2 * within.0.len() > self.roll_rad.len();
+        (self.roll_time_s, self.roll_rad) = within;
+        is_enough
+    }
+
+    /// The first periods of a decay; the whole of another run.
+    #[must_use]
+    pub(super) fn first_periods(mut self, n_periods: f64) -> Self {
+        let most_s = n_periods * std::f64::consts::TAU / self.at.rolling_rad_s;
+        if self.at.kind == RunKind::Decay && self.at.span_s > most_s {
+            let until = |times: &[f64]| times.partition_point(|t| *t <= most_s);
+            let (n_roll, n_moment) = (until(&self.roll_time_s), until(&self.moment_time_s));
+            self.roll_time_s.truncate(n_roll);
+            self.roll_rad.truncate(n_roll);
+            self.moment_time_s.truncate(n_moment);
+            self.moment_n_m.truncate(n_moment);
+            self.at.span_s = most_s;
         }
+        self
     }
 }
 

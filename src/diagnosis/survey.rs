@@ -90,11 +90,14 @@ impl Survey {
     /// Puts runs together.
     pub(super) fn new(mut runs: Vec<Observation>) -> Self {
         let mut conditions: Vec<String> = Vec::new();
-        let n_runs = runs.len();
-        let largest_rad = runs.iter().map(|run| run.at.amplitude_rad).fold(0.0, f64::max);
-        for run in &mut runs {
-            run.read_within(largest_rad);
+        let largest_rad = runs.iter().map(Observation::half_range_rad).fold(0.0, f64::max);
+        let read = |run: &mut Observation| run.read_within(largest_rad);
+        let is_enough: Vec<bool> = runs.iter_mut().map(read).collect();
+        if is_enough.iter().any(|enough| *enough) {
+            let mut is_enough = is_enough.into_iter();
+            runs.retain(|_| is_enough.next() != Some(false));
         }
+        let n_runs = runs.len();
         let condition_of = runs
             .iter_mut()
             .map(|run| {
@@ -169,18 +172,26 @@ impl Survey {
         }
     }
 
-    /// Where a run starts: at its own numbers, unless those of a middling run do better; what a
-    /// record with crests cut off or an odd law identifies may be far from any.
+    /// Where a run starts: at its own numbers, or at those of a middling run or without cubic
+    /// damping where these do better; what a record with crests cut off or an odd law identifies
+    /// may be far from any.
     fn start(&self, run: usize, middling: Base) -> RunState {
         let observation = &self.runs[run];
         let noise = ChannelNoise { sd: observation.rough_noise, correlation: [0.0; 2] };
-        let at = |base: Base| RunState { own: observation.start.clone(), base };
         let left = |state: &RunState| {
             let misfit = misfit(observation, state, &[], &noise);
             if misfit.is_finite() { misfit } else { f64::MAX }
         };
-        let (own, other) = (at(observation.base), at(middling));
-        if left(&other) < left(&own) { other } else { own }
+        let own = observation.base;
+        let bases = [own, middling, Base { b3_s: 0.0, ..own }, Base { b3_s: 0.0, ..middling }];
+        let states = bases.map(|base| RunState { own: observation.start.clone(), base });
+        let [first, others @ ..] = states;
+        others.into_iter().fold(
+            first,
+            |best, other| {
+                if left(&other) < left(&best) { other } else { best }
+            },
+        )
     }
 
     /// The runs of a condition.

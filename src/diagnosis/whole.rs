@@ -7,6 +7,9 @@ use super::survey::Survey;
 use super::verdict::{Diagnosis, Verdict, told};
 use crate::campaign::Tank;
 
+/// Periods of a decay over which a model that starts far away still follows it.
+const FIRST_PERIODS: f64 = 6.0;
+
 /// What a campaign has brought for its diagnosis.
 #[derive(Debug, Clone, Default)]
 pub struct Gathered {
@@ -29,20 +32,33 @@ pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
     }
     let survey = Survey::new(runs);
     let grown = grow(&survey, None);
-    let explained = (!whole.is_empty()).then(|| Survey::new(whole)).and_then(|whole| {
-        let stem = stem(&whole, &survey, &grown);
-        let told_from = |stem| {
-            let diagnosis = told(&whole, &grow(&whole, stem), &reversed, tank);
-            (diagnosis.verdict != Verdict::Unexplained).then_some(diagnosis)
-        };
-        // What the decays alone say is near what all says; that may also lead astray.
-        let first = stem.and_then(|stem| told_from(Some(stem)));
-        first.or_else(|| told_from(None))
-    });
-    Some(explained.unwrap_or_else(|| told(&survey, &grown, &reversed, tank)))
+    let tell = &|survey: &Survey, grown: &Grown| told(survey, grown, &reversed, tank);
+    let explained = if whole.is_empty() { None } else { explained(whole, &survey, &grown, tell) };
+    Some(explained.unwrap_or_else(|| tell(&survey, &grown)))
 }
 
-/// What has grown on the decays alone, where that is more than the base model.
+/// The diagnosis with what the model did after its decays, where that explains it: from what the
+/// decays alone say, which may lead astray, from the first periods, or from nothing.
+fn explained(
+    whole: Vec<Observation>,
+    survey: &Survey,
+    grown: &Grown,
+    tell: &dyn Fn(&Survey, &Grown) -> Diagnosis,
+) -> Option<Diagnosis> {
+    let short = whole.iter().map(|run| run.clone().first_periods(FIRST_PERIODS));
+    let short = Survey::new(short.collect());
+    let whole = Survey::new(whole);
+    let told_from = |stem| {
+        let diagnosis = tell(&whole, &grow(&whole, stem));
+        (diagnosis.verdict != Verdict::Unexplained).then_some(diagnosis)
+    };
+    let first = stem(&whole, survey, grown).and_then(|stem| told_from(Some(stem)));
+    let of_short = || stem(&whole, &short, &grow(&short, None));
+    let second = || of_short().and_then(|stem| told_from(Some(stem)));
+    first.or_else(second).or_else(|| told_from(None))
+}
+
+/// What has grown on other records of the same runs, where that is more than the base model.
 fn stem(whole: &Survey, survey: &Survey, grown: &Grown) -> Option<Stem> {
     if grown.entered.is_empty() {
         return None;

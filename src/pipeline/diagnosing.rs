@@ -134,6 +134,7 @@ impl Observed {
         else {
             return;
         };
+        tracing::debug!(recording, first_s, last_s, run_end_s = after.run_end_s, "came after");
         let lies_within = |start_s: f64| (*first_s..*last_s).contains(&start_s);
         let is_its_own = |run: &Run| match after.run_end_s {
             Some(end_s) => run.end_s.to_bits() == end_s.to_bits(),
@@ -151,6 +152,9 @@ impl Observed {
             None => begin_with(&mut whole, after),
         }
         let whole = Observation::new(&whole, campaign, *order);
+        if let Err(reason) = &whole {
+            tracing::debug!(id, reason, "not joined");
+        }
         for seen in &mut self.observations {
             if seen.alone.id == id {
                 seen.whole = whole.clone().ok();
