@@ -110,6 +110,13 @@ pub struct Diagnosis {
     pub model: ModelFile,
 }
 
+impl Diagnosis {
+    /// Lets go of what only its own page shows, instant by instant.
+    pub fn forget_moments(&mut self) {
+        (self.unexplained_before, self.unexplained_after) = (Vec::new(), Vec::new());
+    }
+}
+
 /// Diagnoses the runs of a campaign; none without runs.
 pub fn diagnose(runs: Vec<Observation>, tank: &Tank) -> Option<Diagnosis> {
     if runs.is_empty() {

@@ -1,8 +1,12 @@
 //! Gathering the runs of a campaign for the diagnosis while they are identified.
 
 use std::f64::consts::TAU;
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::{Arc, PoisonError, RwLock};
 
+use super::shelf::{Lying, Shelf};
 use crate::campaign::Campaign;
 use crate::diagnosis::{self, Diagnosis, Observation};
 use crate::judgement::{Judgements, Place};
@@ -20,11 +24,22 @@ const NEAR: [f64; 2] = [0.02, 0.03];
 /// What the diagnosis will see of the runs heard so far.
 #[derive(Debug, Clone, Default)]
 pub struct Observed {
-    observations: Vec<(Place, Observation)>,
+    observations: Vec<Heard>,
+    /// Where series lie; none keeps them in memory.
+    shelf: Option<Arc<RwLock<Shelf>>>,
     left_out: Vec<String>,
     last: Option<LastHeard>,
     n_heard: usize,
     n_repeats: usize,
+}
+
+/// A run that takes part.
+#[derive(Debug, Clone)]
+struct Heard {
+    place: Place,
+    observation: Observation,
+    /// Where its series are, when they are not with it.
+    lying: Option<Lying>,
 }
 
 /// What is remembered of the run heard last.
@@ -49,6 +64,16 @@ impl LastHeard {
 }
 
 impl Observed {
+    /// Nothing heard yet; what a diagnosis reads sample by sample waits for it on the disk of a
+    /// folder, so that a day of runs takes no memory.
+    ///
+    /// # Errors
+    /// What the system said when there can be no file.
+    pub fn on_disk(folder: &Path) -> io::Result<Self> {
+        let shelf = Some(Arc::new(RwLock::new(Shelf::in_folder(folder)?)));
+        Ok(Self { shelf, ..Self::default() })
+    }
+
     /// Takes a run whose histories are still with it.
     pub fn hear(&mut self, run: &IdentifiedRun, campaign: &Campaign) {
         let observation = match self.last.as_ref().filter(|last| last.goes_on_in(run)) {
@@ -65,7 +90,8 @@ impl Observed {
             Ok(observation) => {
                 let (start_s, end_s) = (run.run.start_s, run.run.end_s);
                 let place = Place { recording: run.recording.clone(), start_s, end_s };
-                self.observations.push((place, observation));
+                let heard = Heard { place, observation, lying: None };
+                self.observations.push(self.put_down(heard));
             }
             Err(reason) => self.left_out.push(format!("{}: {reason}", run.id)),
         }
@@ -75,11 +101,39 @@ impl Observed {
         }
     }
 
+    /// Puts the series of a run on the shelf; where there is no room for them they stay with it.
+    fn put_down(&self, heard: Heard) -> Heard {
+        let Some(shelf) = &self.shelf else { return heard };
+        let mut shelf = shelf.write().unwrap_or_else(PoisonError::into_inner);
+        let Heard { place, mut observation, .. } = heard;
+        let put = shelf.put(&observation.series_mut().map(|values| values.as_slice()));
+        let lying = put.inspect_err(|error| tracing::warn!("kept in memory: {error}")).ok();
+        if lying.is_some() {
+            observation.series_mut().into_iter().for_each(|values| *values = Vec::new());
+        }
+        Heard { place, observation, lying }
+    }
+
+    /// A run with its series, wherever they are; none when its disk does not give them back.
+    fn taken_up(shelf: Option<&Shelf>, heard: Heard) -> Option<Observation> {
+        let Heard { mut observation, lying, .. } = heard;
+        if let Some((shelf, lying)) = shelf.zip(lying) {
+            let series = shelf.get(&lying).inspect_err(|error| {
+                tracing::error!(run = observation.id, "left out of the diagnosis: {error}");
+            });
+            for (values, again) in observation.series_mut().into_iter().zip(series.ok()?) {
+                *values = again;
+            }
+        }
+        Some(observation)
+    }
+
     /// The same without the runs that were rejected by hand.
     #[must_use]
     pub fn judged(mut self, judgements: &Judgements) -> Self {
         let left_out = &mut self.left_out;
-        self.observations.retain(|(Place { recording, start_s, end_s }, observation)| {
+        self.observations.retain(|Heard { place, observation, .. }| {
+            let Place { recording, start_s, end_s } = place;
             let rejection = judgements.rejection(recording, *start_s, *end_s);
             left_out.extend(rejection.map(|rejection| {
                 format!("{}: rejected by hand by {}", observation.id, rejection.by)
@@ -107,7 +161,11 @@ impl Observed {
     /// because of it.
     pub fn diagnosed(self, campaign: &Campaign) -> Option<Diagnosis> {
         let diagnosed = catch_unwind(AssertUnwindSafe(|| {
-            let observations = self.observations.into_iter().map(|(_, one)| one).collect();
+            let shelf = self.shelf.as_deref().map(RwLock::read);
+            let shelf = shelf.map(|shelf| shelf.unwrap_or_else(PoisonError::into_inner));
+            let take = |heard| Self::taken_up(shelf.as_deref(), heard);
+            let observations = self.observations.into_iter().filter_map(take).collect();
+            drop(shelf);
             diagnosis::diagnose(observations, &campaign.tank)
         }));
         diagnosed.unwrap_or_else(|_| {
@@ -131,7 +189,7 @@ impl Observed {
 
     /// Lets go of the second of the runs that have most like them: the first and the last stay.
     fn let_go_of_a_repeat(&mut self) {
-        let kind = |(_, run): &(Place, Observation)| -> (String, RunKind, [i64; 3]) {
+        let kind = |Heard { observation: run, .. }: &Heard| -> (String, RunKind, [i64; 3]) {
             let at = &run.at;
             let place = |value: f64, near: f64| (value / near).round() as i64;
             let rolling = if at.kind == RunKind::Forced { place(at.rolling_rad_s, 0.2) } else { 0 };
