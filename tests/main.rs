@@ -60,6 +60,7 @@ mod the_results_are_exported;
 mod the_simulated_tank_keeps_its_script;
 mod the_simulated_tank_writes_campaigns;
 mod the_tables_and_the_catalogue_agree_with_the_results;
+mod what_came_before_the_recording_is_in_it;
 mod what_is_left_unsure_is_told;
 mod what_the_simulation_lacks_is_named;
 mod wrong_units;

@@ -9,6 +9,7 @@ use devices::clock::{Clock, WallClock};
 use replay::ClosedRecording;
 use tokio::sync::mpsc;
 
+use super::attaching::TakenOver;
 use super::diagnosing::Diagnoser;
 use super::error::LiveError;
 use super::event::EVENTS_WAITING;
@@ -17,7 +18,7 @@ use super::provisional;
 use super::reporting::Reporter;
 use super::showing::show;
 use super::supervisor::Supervisor;
-use super::under_way::{Ended, State, UnderWay};
+use super::under_way::{Ended, Over, State, UnderWay};
 use crate::campaign::{Campaign, Recording};
 use crate::judgement::Judgements;
 use crate::page::{Board, Order};
@@ -38,6 +39,10 @@ pub(super) struct Plan {
     pub(super) rotate_s: f64,
     /// Who does not want it recorded, if anybody.
     pub(super) paused_by: Option<String>,
+    /// Whether it waits for the disk to have room.
+    pub(super) awaits_room: bool,
+    /// What the session before hands over.
+    pub(super) taken_over: Option<TakenOver>,
 }
 
 /// What a session leaves.
@@ -49,6 +54,8 @@ pub(super) struct Left {
     pub(super) results: Option<Results>,
     /// The campaign's recordings, with this one where it is one.
     pub(super) recordings: Vec<Recording>,
+    /// What the next one takes over.
+    pub(super) handed_over: Option<TakenOver>,
 }
 
 /// What the daemon lends to every session.
@@ -62,7 +69,8 @@ pub(super) struct Lent<'l> {
 
 /// Records until something ends the session.
 pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
-    let Plan { mut campaign, text, earlier, diagnoser, rotate_s, paused_by } = plan;
+    let Plan { mut campaign, text, earlier, diagnoser, rotate_s, paused_by, awaits_room, taken_over } =
+        plan;
     let Lent { runtime, clock, orders, board, supervisor } = lent;
     // Whoever takes a judgement back gets the run again, so that none is laid over these.
     campaign.judgements = Judgements::default();
@@ -81,13 +89,20 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
     });
     let campaign = &campaign;
     let keeper = match &paused_by {
+        None if awaits_room => Keeper::waiting(&path),
         None => Keeper::start(&path, text.clone(), clock)?,
         Some(_) => Keeper::idle(),
     };
     board.change(|status| status.paused_by = paused_by);
     let options = Options { keep_histories: false, ..Options::default() };
     let is_ending = &AtomicBool::new(false);
-    let (sender, events) = mpsc::channel(EVENTS_WAITING);
+    let (links, (sender, events)) = match taken_over {
+        Some(TakenOver { attached, ports, ring, events }) => {
+            (Some((attached, ports, ring)), events)
+        }
+        None => (None, mpsc::channel(EVENTS_WAITING)),
+    };
+    let next_sender = sender.clone();
     let (teller, earlier_told) = sync_channel(1);
     let knows_earlier = &AtomicBool::new(false);
     let (recorded, results) = thread::scope(|scope| {
@@ -120,7 +135,7 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
             knows_earlier,
             state: State::default(),
         };
-        let attached = under_way.attach(&sender, text);
+        let attached = under_way.attach(&sender, text, links);
         let reporter = Reporter {
             campaign,
             results,
@@ -143,19 +158,26 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
         };
         (recorded, reporter.join())
     });
-    let (ended, keeper) = recorded?;
+    let Over { ended, keeper, handed_over } = recorded?;
     let reason = match ended {
         Ended::Terminated => "the daemon was asked to end",
         Ended::Reloaded(_) => "a new campaign file came into force",
         Ended::Rotated => "it was long enough",
         Ended::Paused(_) | Ended::Resumed => "somebody stopped the recording",
+        Ended::BrokenOff => "the disk is full, or fails",
         Ended::RoomAgain => "the disk has room again",
     };
     let closed = keeper.close(reason)?;
     let results = results.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
     let recorded = if closed.is_some() { campaign } else { before };
     let recordings = recorded.recordings.clone();
-    Ok(Left { ended, closed, results, recordings })
+    let handed_over = handed_over.map(|((attached, ports, ring), events)| TakenOver {
+        attached,
+        ports,
+        ring,
+        events: (next_sender, events),
+    });
+    Ok(Left { ended, closed, results, recordings, handed_over })
 }
 
 /// What earlier recordings of the campaign say, their pages written again; none when the daemon is
