@@ -63,10 +63,12 @@ fn child_on_the_full_disk() {
     let recordings = tank.files("live", ".mcap");
     assert_eq!(recordings.len(), 2, "{said}");
     let mut recorded = replay::Recorded::open(&recordings[0]).expect("it is whole");
-    let first_s = std::iter::from_fn(|| recorded.next_record().expect("it can be read"))
-        .find_map(|record| match record {
-            replay::Record::Sample(sample) => Some(sample.time_s),
-            _ => None,
+    let first_s =
+        std::iter::from_fn(|| recorded.next_record().expect("it can be read")).find_map(|record| {
+            match record {
+                replay::Record::Sample(sample) => Some(sample.time_s),
+                _ => None,
+            }
         });
     assert!(first_s.is_some_and(|first_s| first_s < full_s), "{first_s:?} and {full_s}: {said}");
     let replayed = rolltank(tank.path(), &["identify", ".", "--json"]);

@@ -35,7 +35,9 @@ impl Raw {
         let text = || String::from_utf8_lossy(&self.bytes).into_owned();
         match self.direction {
             Direction::Opened => LinkEvent::Opened { at_ns },
-            Direction::Joined => LinkEvent::Round { at_ns, due_ns: text().parse().unwrap_or(at_ns) },
+            Direction::Joined => {
+                LinkEvent::Round { at_ns, due_ns: text().parse().unwrap_or(at_ns) }
+            }
             Direction::Sent => LinkEvent::Sent { at_ns, bytes, decoded },
             Direction::Received => LinkEvent::Received { at_ns, bytes, decoded },
             Direction::Waited => LinkEvent::Waited { at_ns, decoded },

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use devices::channel::{Counted, Counts, zero_from_readings};
-use devices::port::LinkEvent;
 use devices::driver::Session;
+use devices::port::LinkEvent;
 use devices::setup::DeviceConfig;
 use devices::{Attachment, InstrumentEvent, Interpreter, Measured, Quality, Quantity, Sample};
 use replay::{AttachedDevice, Calibration, Gap, LinkLosses, Loss, LossKind, Raw, Record};

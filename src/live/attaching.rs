@@ -6,11 +6,11 @@ use devices::clock::{Clock, WallClock};
 use devices::port::LinkThread;
 use devices::{AttachedInstrument, Instrument, Quantity};
 use replay::{CampaignFile, ClockReading, PreTrigger, Record};
-use tokio::sync::mpsc::{Receiver, Sender};
+use tokio::sync::mpsc::{self, Receiver, Sender};
 
 use super::attached::Attached;
 use super::error::LiveError;
-use super::event::Event;
+use super::event::{EVENTS_WAITING, Event};
 use super::under_way::UnderWay;
 
 /// What goes over from a session that is not recorded to the one that is: no byte is lost between.
@@ -25,6 +25,26 @@ pub(super) struct TakenOver {
 
 /// Instruments of the session before.
 pub(super) type Before = (Vec<Attached>, Vec<LinkThread>, PreTrigger);
+
+impl TakenOver {
+    /// Links with the receiving end of their events, and the sending one.
+    pub(super) fn new(
+        ((attached, ports, ring), receiver): (Before, Receiver<Event>),
+        sender: Sender<Event>,
+    ) -> Self {
+        Self { attached, ports, ring, events: (sender, receiver) }
+    }
+
+    /// What is taken over, if anything, and the queue of events, a new one if need be.
+    pub(super) fn or_new(
+        taken_over: Option<Self>,
+    ) -> (Option<Before>, (Sender<Event>, Receiver<Event>)) {
+        match taken_over {
+            Some(Self { attached, ports, ring, events }) => (Some((attached, ports, ring)), events),
+            None => (None, mpsc::channel(EVENTS_WAITING)),
+        }
+    }
+}
 
 impl UnderWay<'_> {
     /// Attaches every device, unless the session before hands it over, and records what is known of

@@ -12,12 +12,12 @@ use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::mpsc;
 
 use super::diagnosing::Diagnoser;
+use super::ended::Ended;
 use super::error::LiveError;
 use super::keeping::recover;
 use super::reporting::write;
 use super::session::{self, Lent, Plan};
 use super::supervisor::Supervisor;
-use super::under_way::Ended;
 use crate::campaign::{self, Campaign, FILE_NAME};
 use crate::judgement::Judgements;
 use crate::page::{Board, Listen, Order, Orders, Served, runtime, serve};
@@ -95,7 +95,9 @@ pub fn run(
                 campaign.recordings = left.recordings;
                 return Ok(earlier.map(|found| last_told(&campaign, found, &diagnoser, board)));
             }
-            Ended::Rotated | Ended::RoomAgain | Ended::BrokenOff => campaign.recordings = left.recordings,
+            Ended::Rotated | Ended::RoomAgain | Ended::BrokenOff => {
+                campaign.recordings = left.recordings;
+            }
             Ended::Paused(by) => (campaign.recordings, paused_by) = (left.recordings, Some(by)),
             Ended::Resumed => (campaign.recordings, paused_by) = (left.recordings, None),
             Ended::Reloaded(new) if particulars(&new.campaign) == particulars(&campaign) => {

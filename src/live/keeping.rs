@@ -118,8 +118,8 @@ impl Keeper {
 
     /// Remembers what a recording need not hold unless it begins there.
     pub(super) fn remember(&mut self, raw: Option<Raw>) {
-        if self.recorder.is_none() {
-            raw.into_iter().for_each(|raw| self.ring.push(Record::Raw(raw)));
+        if let Some(raw) = raw.filter(|_| self.recorder.is_none()) {
+            self.ring.push(Record::Raw(raw));
         }
     }
 

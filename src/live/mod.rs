@@ -19,6 +19,7 @@ mod attached;
 mod attaching;
 mod daemon;
 mod diagnosing;
+mod ended;
 mod error;
 mod event;
 mod keeping;

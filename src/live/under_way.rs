@@ -13,7 +13,7 @@ use replay::{LinkLosses, Note};
 use tokio::sync::mpsc::Receiver;
 
 use super::attached::{Attached, Taken};
-use super::attaching::Before;
+use super::ended::{Ended, Over, Reload};
 use super::error::no_devices;
 use super::event::Event;
 use super::keeping::Keeper;
@@ -39,46 +39,6 @@ const RELOAD_REST_S: f64 = 1.0;
 const BEGIN_AGAIN_S: f64 = 5.0;
 /// Rest [s] before one recording gives way to the next for its length alone.
 const ROTATE_REST_S: f64 = 30.0;
-
-/// Why a recording ended.
-pub(super) enum Ended {
-    /// The daemon is to end.
-    Terminated,
-    /// A new campaign file is in force.
-    Reloaded(Box<Reload>),
-    /// The recording was long enough.
-    Rotated,
-    /// Somebody, who is named, wants no recording for a while.
-    Paused(String),
-    /// It is wanted again.
-    Resumed,
-    /// The disk is full, or fails.
-    BrokenOff,
-    /// The disk has room again.
-    RoomAgain,
-}
-
-impl Ended {
-    /// Whether the next session takes the open links over: there was no recording that ended.
-    fn hands_over(&self) -> bool {
-        matches!(self, Self::Resumed | Self::RoomAgain)
-    }
-}
-
-/// What is left of a session when its loop has ended.
-pub(super) struct Over {
-    pub(super) ended: Ended,
-    pub(super) keeper: Keeper,
-    /// Links for the next session, and where their events wait.
-    pub(super) handed_over: Option<(Before, Receiver<Event>)>,
-}
-
-/// A campaign file that was read again.
-pub(super) struct Reload {
-    pub(super) campaign: Campaign,
-    /// Its text, as it was when it was read.
-    pub(super) text: String,
-}
 
 /// A recording under way.
 pub(super) struct UnderWay<'a> {
@@ -172,11 +132,11 @@ impl UnderWay<'_> {
                 && let Some(ended) = self.state.ended.take()
             {
                 self.renew_status();
-                let handed_over = ended.hands_over().then(|| {
+                let links = ended.hands_over().then(|| {
                     let State { attached, ports, .. } = self.state;
                     ((attached, ports, self.keeper.take_ring()), events)
                 });
-                return Over { ended, keeper: self.keeper, handed_over };
+                return Over { ended, keeper: self.keeper, links };
             }
         }
     }
