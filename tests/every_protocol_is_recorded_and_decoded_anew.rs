@@ -82,12 +82,11 @@ fn decoded_anew(file: &Path, n_channels: usize, said: &str) -> f64 {
         assert!(samples.len() >= 8, "{quantity:?}: {} samples: {said}", samples.len());
         assert!(again.get(quantity) == Some(samples), "{quantity:?} differs: {said}");
     }
-    let times_s = |at: fn(&Vec<(u64, u64)>) -> Option<&(u64, u64)>| {
-        live.values().filter_map(at).map(|(bits, _)| f64::from_bits(*bits)).collect::<Vec<_>>()
+    let length_s = |samples: &Vec<(u64, u64)>| {
+        let time_s = |at: usize| f64::from_bits(samples[at].0);
+        time_s(samples.len() - 1) - time_s(0)
     };
-    let last_s = times_s(|samples| samples.last()).into_iter().fold(f64::INFINITY, f64::min);
-    let first_s = times_s(|samples| samples.first()).into_iter().fold(0.0, f64::max);
-    last_s - first_s
+    live.values().map(length_s).fold(f64::INFINITY, f64::min)
 }
 
 #[test]

@@ -12,8 +12,8 @@
 //! A session is one recording: its instruments are attached when it begins and detached when it
 //! ends, so that its raw bytes alone give its samples again. While nothing is recorded, by hand or
 //! for want of room, a session remembers the last seconds of its links; the recording that follows
-//! takes over links and seconds, and begins with them (attaching). The daemon runs one session after
-//! the other; every queue between threads is bounded, and what finds no place is counted.
+//! takes over links and seconds, and begins with them (attaching). The daemon runs one session
+//! after the other; every queue between threads is bounded, and what finds no place is counted.
 
 mod attached;
 mod attaching;
