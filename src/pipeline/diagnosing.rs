@@ -177,6 +177,15 @@ impl Observed {
         })
     }
 
+    /// Memory that its series take between two diagnoses [bytes].
+    pub fn series_bytes(&self) -> usize {
+        let of = |Heard { observation: one, .. }: &Heard| {
+            let series = [&one.roll_time_s, &one.roll_rad, &one.moment_time_s, &one.moment_n_m];
+            series.map(|values| size_of::<f64>() * values.capacity()).iter().sum::<usize>()
+        };
+        self.observations.iter().map(of).sum()
+    }
+
     /// Whether no run is left to be diagnosed.
     pub fn is_empty(&self) -> bool {
         self.observations.is_empty()

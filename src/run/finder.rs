@@ -10,6 +10,7 @@ use super::Run;
 use super::RunEnd;
 use super::carriage_pass::KNOWN_AFTER_S;
 use super::half_cycles::HalfCycles;
+use super::half_cycles::QUIET_S;
 use super::half_cycles::Swing;
 use super::motion::Motion;
 use super::passed_over::PassedOver;
@@ -123,7 +124,7 @@ impl RunFinder {
         match swing {
             Some(Swing::Quiet(at_s)) => {
                 self.half_period_s = None;
-                self.quiet_since_s = Some(at_s - self.half_cycles.was_still_s());
+                self.quiet_since_s = Some(at_s - QUIET_S);
             }
             Some(Swing::Half(half)) => self.half_period_s = Some(half.duration_s()),
             None => {}

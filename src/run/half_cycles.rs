@@ -7,11 +7,7 @@ use super::ripple::Ripple;
 
 /// A model is still when its roll stays within the noise for this long [s], or longer when the
 /// last half cycle was long.
-const QUIET_S: f64 = 2.0;
-/// Of a model that rolls fast, so many half cycles without a roll tell as much, and at least so
-/// many seconds.
-const QUIET_HALF_CYCLES: f64 = 2.2;
-const QUIET_LEAST_S: f64 = 1.0;
+pub(super) const QUIET_S: f64 = 2.0;
 /// A half cycle longer than this [s] is no roll, so a creeping mean cannot fill the memory.
 const LEG_MAX_S: f64 = 15.0;
 /// The roll must come back by this share of its swing, so that a vibration on top of a large roll
@@ -93,16 +89,9 @@ pub(super) struct HalfCycles {
     leg: Leg,
     turn: Option<Turn>,
     last: Option<HalfCycle>,
-    /// How long the model was still when that was last told [s].
-    was_still_s: f64,
 }
 
 impl HalfCycles {
-    /// How long the model was still when [`Swing::Quiet`] was last told [s].
-    pub(super) fn was_still_s(&self) -> f64 {
-        self.was_still_s
-    }
-
     /// Whether the model is still or held.
     pub(super) fn is_quiet(&self) -> bool {
         self.leg == Leg::Quiet
@@ -141,10 +130,7 @@ impl HalfCycles {
 
     /// Whether a moving model has come to rest, or a drift has been taken for motion.
     fn becomes_quiet(&mut self, smooth: Bin, ripple: Ripple) -> bool {
-        let needed_s = self.last.map_or(QUIET_S, |half| {
-            let fast_s = (QUIET_HALF_CYCLES * half.duration_s()).clamp(QUIET_LEAST_S, QUIET_S);
-            fast_s.max((1.2 * half.duration_s()).min(LEG_MAX_S))
-        });
+        let needed_s = self.last.map_or(0.0, |h| 1.2 * h.duration_s()).clamp(QUIET_S, LEG_MAX_S);
         self.recent.push_back(smooth);
         while self.recent.get(1).is_some_and(|b| b.time_s <= smooth.time_s - needed_s) {
             self.recent.pop_front();
@@ -155,11 +141,7 @@ impl HalfCycles {
         let spans = self.recent.front().is_some_and(|b| b.time_s <= smooth.time_s - needed_s);
         let (low, high) = range(&self.recent);
         let creeps = self.leg_bins.front().is_some_and(|b| smooth.time_s - b.time_s > LEG_MAX_S);
-        let is_quiet = creeps || (spans && high - low < ripple.quiet_range_rad());
-        if is_quiet {
-            self.was_still_s = needed_s;
-        }
-        is_quiet
+        creeps || (spans && high - low < ripple.quiet_range_rad())
     }
 
     fn leave_quiet(&mut self, smooth: Bin, ripple: Ripple) {
