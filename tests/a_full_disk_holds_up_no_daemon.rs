@@ -5,6 +5,7 @@ use std::env;
 use std::fs;
 use std::path::PathBuf;
 
+use super::campaign_folder::rolltank;
 use super::http;
 use super::live_tank::{Daemon, LiveTank};
 
@@ -45,13 +46,36 @@ fn child_on_the_full_disk() {
     daemon.wait_for("linked", 4);
     assert_eq!(status()["recorded"]["stopped"], true, "{}", status());
 
+    let full_s = status()["at_s"].as_f64().expect("a time");
     fs::remove_file(&ballast).expect("it is there");
     daemon.wait_until("recorded again", || tank.files("live", ".part").len() == 1);
     daemon.wait_until("ready", || http::get(&address, "/readyz", &[]).status == 200);
     daemon.wait_for("latency_s=", 1);
+
+    // Once more, in the middle of the recording: that one ends, and another follows.
+    fs::write(&ballast, vec![1; BALLAST_BYTES]).expect("it fits");
+    daemon.wait_until("stopped", || http::get(&address, "/readyz", &[]).status == 503);
+    fs::remove_file(&ballast).expect("it is there");
+    daemon.wait_until("ready again", || http::get(&address, "/readyz", &[]).status == 200);
+    daemon.wait_until("recorded again", || tank.files("live", ".part").len() == 1);
     let (status, said) = daemon.terminate();
     assert_eq!(status.code(), Some(0), "{said}");
-    assert_eq!(tank.files("live", ".mcap").len(), 1, "{said}");
+    let recordings = tank.files("live", ".mcap");
+    assert_eq!(recordings.len(), 2, "{said}");
+    let mut recorded = replay::Recorded::open(&recordings[0]).expect("it is whole");
+    let first_s =
+        std::iter::from_fn(|| recorded.next_record().expect("it can be read")).find_map(|record| {
+            match record {
+                replay::Record::Sample(sample) => Some(sample.time_s),
+                _ => None,
+            }
+        });
+    assert!(first_s.is_some_and(|first_s| first_s < full_s), "{first_s:?} and {full_s}: {said}");
+    let replayed = rolltank(tank.path(), &["identify", ".", "--json"]);
+    // Only the replay has seen the note of what was lost.
+    let without_notes = |text: &str| text.split("\"notes\"").next().map(str::to_owned);
+    let live = tank.text("results/identification.json");
+    assert!(without_notes(&replayed.out) == without_notes(&live), "{}: {said}", replayed.out);
     assert!(said.contains("not recorded: ") && said.contains("are free"), "{said}");
     assert!(tank.text("results/identification.json").contains("\"b1_per_s\""), "{said}");
     println!("\nfull, then recorded");

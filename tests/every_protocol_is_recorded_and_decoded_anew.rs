@@ -1,12 +1,17 @@
 //! Instruments of every protocol before the daemon: raw bytes give the samples again, to the bit.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::time::Duration;
 
 use devices::{Device, Quantity, Reading, Sample};
 use replay::{Columns, Player, Record, Recorded};
 
+use super::http::post;
 use super::live_tank::{Daemon, LiveTank};
+
+/// How long instruments are followed before their recording is wanted again.
+const BEFORE: Duration = Duration::from_millis(1500);
 
 /// A `[[device]]` with one channel.
 fn device(profile: &str, quantity: &str, lines: &str) -> String {
@@ -39,16 +44,35 @@ fn recorded_is_decoded_anew(devices: &[String], n_channels: usize) {
     tank.port(0).replug();
     daemon.wait_for("linked", n_channels + 1);
     std::thread::sleep(Duration::from_millis(600));
+    let address = daemon.address();
+    let act = |what: &str| {
+        let wish = format!("{{\"by\": \"C. Costa\", \"what\": \"{what}\"}}");
+        assert_eq!(post(&address, "/act", &[], &wish).status, 200, "{what}");
+    };
+    act("stop_recording");
+    daemon.wait_for("linked", 2 * n_channels + 1);
+    std::thread::sleep(BEFORE);
+    act("start_recording");
+    daemon.wait_until("it is recorded again", || tank.files("live", ".part").len() == 1);
+    std::thread::sleep(Duration::from_millis(600));
     let (status, said) = daemon.terminate();
     assert_eq!(status.code(), Some(0), "{said}");
+    assert_eq!(said.matches("linked").count(), 2 * n_channels + 1, "ports stay open: {said}");
     let files = tank.files("live", ".mcap");
-    let mut records = Recorded::open(&files[0]).expect("it is whole");
+    assert_eq!(files.len(), 2, "{said}");
+    let [_, joined_s] = [&files[0], &files[1]].map(|file| decoded_anew(file, n_channels, &said));
+    assert!(joined_s > BEFORE.as_secs_f64() + 0.3, "{joined_s} s: {said}");
+}
+
+/// Samples beside the raw bytes are what these give anew; how long the recording is [s].
+fn decoded_anew(file: &Path, n_channels: usize, said: &str) -> f64 {
+    let mut records = Recorded::open(file).expect("it is whole");
     let records = std::iter::from_fn(|| records.next_record().expect("it can be read"));
     let live = sorted(records.filter_map(|record| match record {
         Record::Sample(sample) => Some(sample),
         _ => None,
     }));
-    let files = [(None, files[0].clone())];
+    let files = [(None, file.to_owned())];
     let mut player = Player::open("live", &files, &Columns::default()).expect("it opens");
     let mut again = Vec::new();
     while player.read(&mut again).expect("it plays") == Reading::More {}
@@ -58,6 +82,11 @@ fn recorded_is_decoded_anew(devices: &[String], n_channels: usize) {
         assert!(samples.len() >= 8, "{quantity:?}: {} samples: {said}", samples.len());
         assert!(again.get(quantity) == Some(samples), "{quantity:?} differs: {said}");
     }
+    let length_s = |samples: &Vec<(u64, u64)>| {
+        let time_s = |at: usize| f64::from_bits(samples[at].0);
+        time_s(samples.len() - 1) - time_s(0)
+    };
+    live.values().map(length_s).fold(f64::INFINITY, f64::min)
 }
 
 #[test]

@@ -109,7 +109,7 @@ fn soak(tank: &LiveTank, duration_s: f64) -> String {
     let mut daemon = Daemon::start(tank, &[]);
     daemon.wait_for("linked", 2);
     let start = Instant::now();
-    // Largest memory in the second and in the last quarter, and the processor time between.
+    // Largest memory in each quarter, and the processor time after the first.
     let mut quarters = [0.0_f64; 4];
     let mut settled = None;
     while start.elapsed().as_secs_f64() < duration_s {
@@ -137,17 +137,17 @@ fn soak(tank: &LiveTank, duration_s: f64) -> String {
     assert_eq!(samples["speed"], slow.n_frames);
     assert!(fast.n_frames as f64 > 0.95 * 2000.0 * duration_s, "{devices:?}");
     assert!(slow.n_frames as f64 > 0.95 * 100.0 * duration_s, "{devices:?}");
-    let [_, second_mb, _, last_mb] = quarters;
-    // The diagnosis keeps the roll of each run, up to a hundred of them.
+    let [_, second_mb, third_mb, last_mb] = quarters;
     let n_runs = said.matches("run found").count();
-    assert!(last_mb < second_mb + 4.0 + 3.0 * n_runs as f64, "{quarters:?} MB, {n_runs} runs");
+    // What a diagnosis works with comes and goes; whatever stays of a run would be in the last.
+    assert!(last_mb < second_mb.max(third_mb) + 4.0, "{quarters:?} MB, {n_runs} runs");
     let live = tank.text("results/identification.json");
     let replayed = rolltank(tank.path(), &["identify", ".", "--json"]);
     assert_eq!(replayed.out, live, "{said}");
     format!(
         "{duration_s} s: {} binary and {} text samples in the recording, none lost; {} runs; \
-         daemon: CPU {:.1} % of a core, memory at most {second_mb:.1} MB in the second quarter and \
-         {last_mb:.1} MB in the last",
+         daemon: CPU {:.1} % of a core, memory at most {second_mb:.1} MB in the second quarter, \
+         {third_mb:.1} MB in the third and {last_mb:.1} MB in the last",
         fast.n_values,
         slow.n_values,
         n_runs,

@@ -156,3 +156,27 @@ fn a_keel_that_is_lost_is_no_wave_because_the_tank_has_none_of_that_frequency() 
     let (_, verdict) = diagnosed(RunSet::Rest, &["invented.lost_keel"], 1.0, 651);
     assert_eq!((verdict.word.as_str(), verdict.causes.len()), ("unexplained", 0));
 }
+
+#[test]
+fn water_in_the_hull_is_named_by_what_the_model_does_after_its_decays() {
+    // Its beat cuts these decays short, and they alone stay unexplained.
+    let (campaign, verdict) = diagnosed(RunSet::Rest, &["restoring.free_surface"], 1.0, 710);
+    assert_eq!(verdict.word, "named", "{:?}", verdict.causes);
+    assert_eq!(verdict.causes[0].effect, "restoring.free_surface");
+    let numbers = verdict.json["causes"][0]["parameters"].as_array().expect("a list");
+    let of = |symbol: &str, what: &str| -> f64 {
+        let number = numbers.iter().find(|number| number["symbol"] == symbol).expect("it is told");
+        number[what].as_f64().expect("a number")
+    };
+    let damping = campaign.effects[0].values[2];
+    let off = (of("z", "mean") - damping) / of("z", "sd");
+    assert!(off.abs() < 4.0, "its damping is {off:.1} sd off {damping}");
+}
+
+#[test]
+fn a_run_refused_for_the_sign_of_its_force_is_told_among_the_causes() {
+    let hidden = ["instrument.channel_skew", "run.mislabelled"];
+    let (_, verdict) = diagnosed(RunSet::Forced, &hidden, 2.0, 3637);
+    let told: Vec<&str> = verdict.causes.iter().map(|cause| cause.effect.as_str()).collect();
+    assert_eq!(told, hidden);
+}

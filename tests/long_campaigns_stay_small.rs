@@ -10,6 +10,9 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::Duration;
 
+use rolltank::campaign;
+use rolltank::pipeline::{self, Learnt, Observed, Options};
+
 use super::campaign_folder::{CampaignFolder, decay};
 
 /// What the whole program may take, of which a short recording needs about 20.
@@ -77,4 +80,23 @@ fn a_long_recording_is_replayed_in_bounded_memory() {
         println!("{n_decays} runs, peak memory {peak:.0} MB");
         assert!(peak < MEMORY_MAX_MB, "{peak:.0} MB");
     }
+}
+
+#[test]
+fn what_a_diagnosis_reads_of_a_run_waits_on_disk_and_says_the_same() {
+    let folder = CampaignFolder::new();
+    let campaign = campaign::read(folder.path()).expect("it is good");
+    let mut in_memory = Observed::default();
+    let mut on_disk = Observed::on_disk(&folder.path().join("results")).expect("there is a disk");
+    let mut hear = |learnt: Learnt<'_>| {
+        in_memory.hear(learnt, &campaign);
+        on_disk.hear(learnt, &campaign);
+        Ok(())
+    };
+    pipeline::replay(&campaign, &Options::default(), &mut |_| {}, &mut hear).expect("it plays");
+    assert_eq!(on_disk.n_heard(), 1);
+    assert!(in_memory.series_bytes() > 5_000, "{} bytes", in_memory.series_bytes());
+    assert_eq!(on_disk.series_bytes(), 0);
+    let said = [in_memory, on_disk].map(|observed| observed.diagnosed(&campaign));
+    assert!(said[0].is_some() && said[0] == said[1]);
 }

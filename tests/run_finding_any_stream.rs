@@ -55,6 +55,12 @@ fn assert_sound(events: &[Event]) {
                 let still = run.still.map(|s| [s.start_s, s.end_s, s.roll_rad]);
                 assert!(still.is_none_or(|s| s.iter().all(|v| v.is_finite())));
             }
+            Event::Aftermath(after) => {
+                let from_s = after.run_end_s.unwrap_or(f64::NEG_INFINITY);
+                assert!(is_sound(&after.roll, from_s, f64::INFINITY));
+                assert!(is_sound(&after.drive, from_s, f64::INFINITY));
+                assert!(!after.roll.time_s.is_empty());
+            }
             Event::Rejected(r) => {
                 assert!(r.start_s <= r.end_s && r.end_s.is_finite(), "{r:?}");
                 assert!(!r.reason.contains("NaN") && !r.reason.contains("inf"), "{r:?}");

@@ -48,6 +48,7 @@ fn find(samples: &[Sample], declared_speed_m_s: f64) -> Vec<Event> {
                 run.roll.time_s.len(),
                 run.still
             ),
+            Event::Aftermath(after) => println!("more after {:?} s", after.run_end_s),
             Event::Rejected(r) => println!("{:.2} to {:.2} s: {}", r.start_s, r.end_s, r.reason),
         }
     }

@@ -1,7 +1,7 @@
 //! A labelled scene of the simulated tank, and the check that its runs are found.
 
 use devices::Sample;
-use rolltank::run::{Event, Limits, Rejection, Run, RunEnd, RunFinder, RunKind};
+use rolltank::run::{Aftermath, Event, Limits, Rejection, Run, RunEnd, RunFinder, RunKind};
 use rolltank::tank::{Scenario, SimulatedPass, TrueKind, TrueRun, simulate_pass};
 
 /// One pass with its instruments.
@@ -110,6 +110,7 @@ pub(crate) const LIMITS: Limits = Limits {
 pub(crate) struct Found {
     pub(crate) runs: Vec<Run>,
     pub(crate) rejected: Vec<Rejection>,
+    pub(crate) aftermaths: Vec<Aftermath>,
 }
 
 impl Found {
@@ -145,14 +146,15 @@ pub(crate) fn find_in(samples: &[Sample], limits: Limits) -> Found {
         finder.push(sample, &mut events);
     }
     finder.finish(&mut events);
-    let (mut runs, mut rejected) = (Vec::new(), Vec::new());
+    let (mut runs, mut rejected, mut aftermaths) = (Vec::new(), Vec::new(), Vec::new());
     for event in events {
         match event {
             Event::Run(run) => runs.push(run),
             Event::Rejected(rejection) => rejected.push(rejection),
+            Event::Aftermath(after) => aftermaths.push(after),
         }
     }
-    Found { runs, rejected }
+    Found { runs, rejected, aftermaths }
 }
 
 /// Start and end within 0.1 s or half a roll period, whichever is longer; never before the model

@@ -4,10 +4,10 @@ use std::fs;
 use std::path::PathBuf;
 
 use rolltank::campaign;
-use rolltank::diagnosis::{Diagnosis, Gathered, Observation, Verdict, diagnose};
+use rolltank::diagnosis::{Diagnosis, Verdict};
 use rolltank::model::effects;
 use rolltank::model::model_file::ModelFile;
-use rolltank::pipeline::{self, Learnt, Options};
+use rolltank::pipeline::{self, Learnt, Observed, Options};
 use rolltank::report::{DIAGNOSIS_SCHEMA, diagnosis_json};
 use serde_json::Value;
 
@@ -150,19 +150,19 @@ fn kvlcc2(to_froude: f64) -> Option<Diagnosis> {
         return None;
     }
     let campaign = campaign::read(&folder).expect("the campaign file is right");
-    let mut runs = Vec::new();
+    let mut observed = Observed::default();
     pipeline::replay(&campaign, &Options::default(), &mut |_| {}, &mut |learnt| {
-        if let Learnt::Run(run, _) = learnt
-            && run.froude <= to_froude
-        {
-            runs.push(Observation::new(run, &campaign, runs.len())?);
+        let is_asked_about = match learnt {
+            Learnt::Run(run, _) => run.froude <= to_froude,
+            _ => true,
+        };
+        if is_asked_about {
+            observed.hear(learnt, &campaign);
         }
         Ok(())
     })
     .expect("the recordings can be read");
-    Some(
-        diagnose(Gathered { runs, ..Gathered::default() }, &campaign.tank).expect("there is a run"),
-    )
+    Some(observed.diagnosed(&campaign).expect("there is a run"))
 }
 
 #[test]

@@ -162,6 +162,8 @@ impl Interpreter {
                 self.troubles.opened(*at_ns);
                 out.push(InstrumentEvent::Linked { at_ns: *at_ns });
             }
+            // What was asked before is not missing.
+            LinkEvent::Round { .. } => {}
             LinkEvent::Received { at_ns, bytes, decoded } => {
                 self.troubles.received(bytes);
                 self.decoded(decoded, *at_ns, out);
@@ -203,6 +205,10 @@ impl Interpreter {
         let event = match event {
             LinkEvent::Opened { at_ns } => {
                 session.open(*at_ns);
+                event.clone()
+            }
+            LinkEvent::Round { due_ns, .. } => {
+                session.join(*due_ns);
                 event.clone()
             }
             LinkEvent::Sent { at_ns, bytes, .. } => {

@@ -13,6 +13,7 @@ impl Raw {
     pub fn of_link(device: &Arc<str>, event: &LinkEvent, now_s: f64) -> Option<Self> {
         let (direction, bytes) = match event {
             LinkEvent::Opened { .. } => (Direction::Opened, Vec::new()),
+            LinkEvent::Round { due_ns, .. } => (Direction::Joined, due_ns.to_string().into_bytes()),
             LinkEvent::Sent { bytes, .. } => (Direction::Sent, bytes.clone()),
             LinkEvent::Received { bytes, .. } => (Direction::Received, bytes.clone()),
             LinkEvent::Waited { .. } => (Direction::Waited, Vec::new()),
@@ -34,6 +35,9 @@ impl Raw {
         let text = || String::from_utf8_lossy(&self.bytes).into_owned();
         match self.direction {
             Direction::Opened => LinkEvent::Opened { at_ns },
+            Direction::Joined => {
+                LinkEvent::Round { at_ns, due_ns: text().parse().unwrap_or(at_ns) }
+            }
             Direction::Sent => LinkEvent::Sent { at_ns, bytes, decoded },
             Direction::Received => LinkEvent::Received { at_ns, bytes, decoded },
             Direction::Waited => LinkEvent::Waited { at_ns, decoded },
@@ -56,6 +60,7 @@ mod tests {
             let (bytes, decoded) = (vec![1, 2, 255], Vec::new());
             for event in [
                 LinkEvent::Opened { at_ns },
+                LinkEvent::Round { at_ns, due_ns: at_ns.saturating_sub(7) },
                 LinkEvent::Sent { at_ns, bytes: bytes.clone(), decoded: decoded.clone() },
                 LinkEvent::Received { at_ns, bytes, decoded: decoded.clone() },
                 LinkEvent::Waited { at_ns, decoded },

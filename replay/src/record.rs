@@ -58,6 +58,9 @@ pub enum Direction {
     Sent,
     /// Nowhere: the link was opened.
     Opened,
+    /// Nowhere: the link was open already, and the recording joins it here; the bytes tell when the
+    /// round of questions that begins was due [ns].
+    Joined,
     /// Nowhere: waiting for an answer was given up.
     Waited,
     /// Nowhere: the link was lost.

@@ -176,7 +176,7 @@ fn a_recording_begins_before_its_trigger_and_goes_on_in_the_same_file() {
     }
     assert_eq!(ring.crowded_out(), 0);
     let mut recorder = start(&target);
-    ring.pour_into(&mut recorder).expect("it is recorded");
+    ring.pour().for_each(|record| recorder.push(record).expect("it is recorded"));
     assert!(ring.is_empty());
     for record in (3000..4000).flat_map(records) {
         recorder.push(record).expect("it is recorded");
@@ -192,7 +192,7 @@ fn a_recording_begins_before_its_trigger_and_goes_on_in_the_same_file() {
     assert_eq!(found, expected.collect::<Vec<_>>(), "half a second before, and all after");
 
     let mut next = start(&folder.path().join("next.mcap"));
-    ring.pour_into(&mut next).expect("it is recorded");
+    ring.pour().for_each(|record| next.push(record).expect("it is recorded"));
     let part = folder.path().join("next.mcap.part");
     assert_eq!(read(&part), [device(), calibration(0.1, 0.25)], "what holds, holds on");
 }
@@ -209,7 +209,7 @@ fn a_ring_takes_no_more_memory_than_it_was_given() {
     let folder = folder();
     let target = folder.path().join("pass.mcap");
     let mut recorder = start(&target);
-    ring.pour_into(&mut recorder).expect("it is recorded");
+    ring.pour().for_each(|record| recorder.push(record).expect("it is recorded"));
     recorder.finish(Exit::success("it was full")).expect("it is finished");
     let mut found = read(&target);
     found.retain(|record| !matches!(record, Record::RunStop(_)));

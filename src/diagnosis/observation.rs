@@ -59,6 +59,11 @@ impl Observation {
         }
     }
 
+    /// What it holds sample by sample: all that makes it large.
+    pub fn series_mut(&mut self) -> [&mut Vec<f64>; 4] {
+        [&mut self.roll_time_s, &mut self.roll_rad, &mut self.moment_time_s, &mut self.moment_n_m]
+    }
+
     fn decay(run: &IdentifiedRun, campaign: &Campaign, order: usize) -> Result<Self, String> {
         let mut record = Record::new(&run.run.roll)?;
         let known = &run.identification;

@@ -111,6 +111,13 @@ pub struct Diagnosis {
     pub model: ModelFile,
 }
 
+impl Diagnosis {
+    /// Lets go of what only its own page shows, instant by instant.
+    pub fn forget_moments(&mut self) {
+        (self.unexplained_before, self.unexplained_after) = (Vec::new(), Vec::new());
+    }
+}
+
 /// What a grown model says of the runs that it has grown on.
 pub(super) fn told(
     survey: &Survey,

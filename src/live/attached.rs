@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use devices::channel::{Counted, Counts, zero_from_readings};
+use devices::driver::Session;
 use devices::port::LinkEvent;
 use devices::setup::DeviceConfig;
 use devices::{Attachment, InstrumentEvent, Interpreter, Measured, Quality, Quantity, Sample};
@@ -16,11 +17,36 @@ use crate::page::status::{ChannelStatus, DeviceStatus, RecentRaw};
 pub(super) struct Attached {
     name: Arc<str>,
     interpreter: Interpreter,
+    /// What its adapter may hold back [s].
+    latency_s: f64,
+    /// Decodes the bytes anew as a replay will, where the recording joins a link that was open; the
+    /// thread of the port knows more of it than the recording holds.
+    joined: Option<Joined>,
     channels: Vec<AttachedChannel>,
     events: Vec<InstrumentEvent>,
     /// Why samples are missing, until they come again.
     lost_because: Option<String>,
     pub(super) status: DeviceStatus,
+}
+
+struct Joined {
+    session: Session,
+    has_begun: bool,
+}
+
+impl Joined {
+    /// Where this recording begins to follow the link, when it does with this event.
+    fn begins(&mut self, link: &LinkEvent) -> Option<LinkEvent> {
+        let at = match link {
+            LinkEvent::Opened { .. } | LinkEvent::Round { .. } => link.clone(),
+            LinkEvent::Received { at_ns, .. } if !self.session.asks() => {
+                LinkEvent::Round { at_ns: *at_ns, due_ns: *at_ns }
+            }
+            _ => return None,
+        };
+        self.has_begun = true;
+        Some(at)
+    }
 }
 
 struct AttachedChannel {
@@ -43,6 +69,8 @@ pub(super) struct Taken {
     pub(super) records: Vec<Record>,
     /// For the run finder, in order.
     pub(super) samples: Vec<Sample>,
+    /// Where a recording could join the link.
+    pub(super) joint: Option<Raw>,
     /// What was counted when the samples came; none of them before it.
     pub(super) counted: Vec<(usize, Counted)>,
 }
@@ -68,7 +96,7 @@ impl AttachedChannel {
 }
 
 impl Attached {
-    pub(super) fn new(config: &DeviceConfig, interpreter: Interpreter) -> Self {
+    pub(super) fn new(config: &DeviceConfig, interpreter: Interpreter, latency_s: f64) -> Self {
         let channel = |quantity| AttachedChannel {
             quantity,
             counts: Counts::default(),
@@ -78,6 +106,8 @@ impl Attached {
         Self {
             name: config.name.as_str().into(),
             interpreter,
+            latency_s,
+            joined: None,
             channels: config.channels.iter().map(|of| channel(of.quantity)).collect(),
             events: Vec::new(),
             lost_because: None,
@@ -91,12 +121,12 @@ impl Attached {
 
     /// What the recording says of the device and its channels before the first byte.
     pub(super) fn introduction(
+        &self,
         config: &DeviceConfig,
         profile: &str,
-        latency_s: f64,
         time_s: f64,
     ) -> Result<Vec<Record>, LiveError> {
-        let attachment = Attachment { latency_s, device: config.clone() };
+        let attachment = self.attachment(config);
         let settings = attachment
             .to_text()
             .map_err(|source| LiveError::Attachment { device: config.name.clone(), source })?;
@@ -119,8 +149,48 @@ impl Attached {
         Ok(records)
     }
 
-    /// Takes what happened.
+    fn attachment(&self, config: &DeviceConfig) -> Attachment {
+        Attachment { latency_s: self.latency_s, device: config.clone() }
+    }
+
+    /// Whether it is the device of that name.
+    pub(super) fn is_named(&self, name: &str) -> bool {
+        *self.name == *name
+    }
+
+    /// Another recording goes on with the open link, and knows nothing of what was before.
+    pub(super) fn begin_again(&mut self, config: &DeviceConfig) -> Result<(), LiveError> {
+        let (session, interpreter) = self.attachment(config).start()?;
+        self.interpreter = interpreter;
+        self.joined = Some(Joined { session, has_begun: false });
+        self.lost_because = None;
+        self.channels.iter_mut().for_each(|channel| channel.counts = Counts::default());
+        Ok(())
+    }
+
+    /// Takes what happened; what a recording that joins the link cannot understand yet is none of
+    /// it.
     pub(super) fn take(
+        &mut self,
+        link: &LinkEvent,
+        now_s: f64,
+        losses: &mut LinkLosses,
+        taken: &mut Taken,
+    ) {
+        if let Some(joined) = self.joined.as_mut().filter(|joined| !joined.has_begun) {
+            let Some(begins) = joined.begins(link) else { return };
+            self.take_next(&begins, now_s, losses, taken);
+            if begins == *link {
+                return;
+            }
+        } else if matches!(link, LinkEvent::Round { .. }) {
+            taken.joint = Raw::of_link(&self.name, link, now_s);
+            return;
+        }
+        self.take_next(link, now_s, losses, taken);
+    }
+
+    fn take_next(
         &mut self,
         link: &LinkEvent,
         now_s: f64,
@@ -130,7 +200,10 @@ impl Attached {
         taken.records.extend(Raw::of_link(&self.name, link, now_s).map(Record::Raw));
         self.note_link(link);
         let mut events = std::mem::take(&mut self.events);
-        self.interpreter.interpret(link, &mut events);
+        match &mut self.joined {
+            Some(Joined { session, .. }) => self.interpreter.replay(link, session, &mut events),
+            None => self.interpreter.interpret(link, &mut events),
+        }
         let before: Vec<Counts> = self.channels.iter().map(|channel| channel.counts).collect();
         for (channel, (_, counts)) in self.channels.iter_mut().zip(self.interpreter.counts()) {
             channel.counts = counts;
@@ -206,8 +279,10 @@ impl Attached {
                 return n_missing.unwrap_or(0);
             }
             InstrumentEvent::Linked { .. } => {
-                self.status.linked = true;
-                tracing::info!(device, port = self.status.port, "linked");
+                // A recording that joins an open link hears of its opening again.
+                if !std::mem::replace(&mut self.status.linked, true) {
+                    tracing::info!(device, port = self.status.port, "linked");
+                }
             }
             InstrumentEvent::LinkLost { seen, .. } => {
                 self.status.linked = false;
@@ -221,8 +296,9 @@ impl Attached {
                 tracing::warn!(device, at_s, "the instrument started anew");
             }
             InstrumentEvent::Identity(text) => {
-                tracing::info!(device, identity = text, "says who it is");
-                self.status.identity = Some(text.clone());
+                if self.status.identity.replace(text.clone()).as_ref() != Some(text) {
+                    tracing::info!(device, identity = text, "says who it is");
+                }
             }
             InstrumentEvent::Trouble(trouble) => {
                 let hint = trouble.hint().unwrap_or_default();

@@ -12,12 +12,12 @@ use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::mpsc;
 
 use super::diagnosing::Diagnoser;
+use super::ended::Ended;
 use super::error::LiveError;
 use super::keeping::recover;
 use super::reporting::write;
 use super::session::{self, Lent, Plan};
 use super::supervisor::Supervisor;
-use super::under_way::Ended;
 use crate::campaign::{self, Campaign, FILE_NAME};
 use crate::judgement::Judgements;
 use crate::page::{Board, Listen, Order, Orders, Served, runtime, serve};
@@ -65,7 +65,7 @@ pub fn run(
     let mut earlier = None;
     let mut diagnoser = Diagnoser::start(campaign.clone(), board, sender.clone());
     let mut converting = Converting::default();
-    let mut paused_by = None;
+    let (mut paused_by, mut awaits_room, mut taken_over) = (None, false, None);
     loop {
         let plan = Plan {
             text: text.clone(),
@@ -74,6 +74,8 @@ pub fn run(
             diagnoser: diagnoser.clone(),
             rotate_s: options.rotate_s,
             paused_by: paused_by.clone(),
+            awaits_room,
+            taken_over: taken_over.take(),
         };
         let handle = runtime.handle();
         let lent = Lent {
@@ -85,14 +87,17 @@ pub fn run(
         };
         let left = session::run(plan, lent)?;
         left.closed.map_or(Ok(()), |closed| converting.start(closed))?;
-        earlier = left.results;
+        (earlier, taken_over) = (left.results, left.handed_over);
+        awaits_room = matches!(left.ended, Ended::BrokenOff);
         match left.ended {
             Ended::Terminated => {
                 converting.finish()?;
                 campaign.recordings = left.recordings;
                 return Ok(earlier.map(|found| last_told(&campaign, found, &diagnoser, board)));
             }
-            Ended::Rotated | Ended::RoomAgain => campaign.recordings = left.recordings,
+            Ended::Rotated | Ended::RoomAgain | Ended::BrokenOff => {
+                campaign.recordings = left.recordings;
+            }
             Ended::Paused(by) => (campaign.recordings, paused_by) = (left.recordings, Some(by)),
             Ended::Resumed => (campaign.recordings, paused_by) = (left.recordings, None),
             Ended::Reloaded(new) if particulars(&new.campaign) == particulars(&campaign) => {

@@ -37,7 +37,12 @@ impl Diagnoser {
     pub(super) fn start(campaign: Campaign, board: &Board, orders: Orders) -> Self {
         // One question waits while another is answered; more would be the same question.
         let (ask, asked) = sync_channel(1);
-        let known = Arc::new(Mutex::new(Known::default()));
+        let observed = Observed::on_disk(&pipeline::results_folder(&campaign));
+        let observed = observed.unwrap_or_else(|error| {
+            tracing::warn!("runs are kept in memory for the diagnosis: {error}");
+            Observed::default()
+        });
+        let known = Arc::new(Mutex::new(Known { observed, ..Known::default() }));
         let (own, own_board) = (Arc::clone(&known), board.clone());
         thread::spawn(move || answer(&campaign, &own, &own_board, (&asked, &orders)));
         Self { known, board: board.clone(), ask }
@@ -92,7 +97,7 @@ fn diagnose(campaign: &Campaign, known: &Mutex<Known>, board: &Board) -> bool {
         (known.observed.clone().judged(&judgements), of)
     };
     let nothing_left = observed.is_empty();
-    let diagnosis = observed.diagnosed(campaign).map(Arc::new);
+    let mut diagnosis = observed.diagnosed(campaign);
     if diagnosis.is_none() && !nothing_left {
         return false;
     }
@@ -100,8 +105,9 @@ fn diagnose(campaign: &Campaign, known: &Mutex<Known>, board: &Board) -> bool {
     let mut known = lock(known);
     let is_newer = of > known.of;
     if is_newer {
-        write(campaign, diagnosis.as_deref(), &pipeline::results_folder(campaign));
-        (known.of, known.diagnosis) = (of, diagnosis);
+        write(campaign, diagnosis.as_ref(), &pipeline::results_folder(campaign));
+        diagnosis.iter_mut().for_each(Diagnosis::forget_moments);
+        (known.of, known.diagnosis) = (of, diagnosis.map(Arc::new));
     }
     is_newer
 }

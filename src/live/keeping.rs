@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use devices::clock::WallClock;
 use replay::{
-    ClosedRecording, Disk, Exit, LIVE_SOURCE, LocalDisk, Progress, Provenance, Record, Recorder,
-    ReplayError, Settings,
+    ClosedRecording, Disk, Exit, LIVE_SOURCE, LocalDisk, PreTrigger, Progress, Provenance, Raw,
+    Record, Recorder, ReplayError, Settings,
 };
 
 use super::error::LiveError;
@@ -17,12 +17,20 @@ use crate::page::stamp;
 /// Free space [bytes] at which recording begins again; with less it would soon stop again.
 const ROOM_BYTES: u64 = 2 * Settings::LIVE.reserve_bytes;
 
-/// Takes the records of a session; those of one that is not recorded are let go of.
+/// Of what is not recorded, so much is remembered [s] and begins the next recording: whoever lets
+/// the model go and then sees that nothing is recorded has the run.
+const REMEMBERED_S: f64 = 30.0;
+/// Memory that it may take [bytes]: four times what four channels at 2 kHz need.
+const REMEMBERED_BYTES: usize = 32 << 20;
+
+/// Takes the records of a session; of one that is not recorded it remembers the last seconds of the
+/// links.
 pub(super) struct Keeper {
     recorder: Option<Recorder>,
     /// Where recordings go; none where somebody does not want any.
     folder: Option<PathBuf>,
     n_refused: u64,
+    ring: PreTrigger,
 }
 
 /// Name of a recording that begins now, relative to the campaign's folder:
@@ -55,7 +63,7 @@ impl Keeper {
             zero_log_time_ns: u64::try_from(clock.start_unix_ns()).unwrap_or_default(),
         };
         let started = Recorder::start(path, &provenance, Settings::LIVE, Box::new(LocalDisk));
-        let mut keeper = Self { recorder: None, folder: Some(folder), n_refused: 0 };
+        let mut keeper = Self { folder: Some(folder), ..Self::idle() };
         match started {
             Ok(recorder) => keeper.recorder = Some(recorder),
             Err(error) if error.is_for_want_of_room() => keeper.told(Err(error)),
@@ -66,18 +74,28 @@ impl Keeper {
 
     /// Of a session that somebody does not want recorded.
     pub(super) fn idle() -> Self {
-        Self { recorder: None, folder: None, n_refused: 0 }
+        let ring = PreTrigger::new(REMEMBERED_S, REMEMBERED_BYTES);
+        Self { recorder: None, folder: None, n_refused: 0, ring }
+    }
+
+    /// Of a session that waits for the disk to have room.
+    pub(super) fn waiting(path: &Path) -> Self {
+        Self { folder: Some(path.parent().unwrap_or(path).to_owned()), ..Self::idle() }
     }
 
     /// Whether anything is recorded.
     pub(super) fn records(&self) -> bool {
-        self.recorder.is_some()
+        self.recorder.as_ref().is_some_and(|recorder| !recorder.progress().stopped)
+    }
+
+    /// Whether a recording was begun that a full or failing disk has stopped.
+    pub(super) fn broke_off(&self) -> bool {
+        self.recorder.is_some() && !self.records()
     }
 
     /// Whether nothing is recorded although it is wanted: the disk is full, or fails.
     fn is_stopped(&self) -> bool {
-        let recorder = self.recorder.as_ref();
-        self.folder.is_some() && recorder.is_none_or(|recorder| recorder.progress().stopped)
+        self.folder.is_some() && !self.records()
     }
 
     /// Whether recording has stopped, and the disk has room for another.
@@ -88,8 +106,26 @@ impl Keeper {
 
     /// Takes a record; a disk that fails is told once and stops nothing else.
     pub(super) fn push(&mut self, record: Record) {
-        let pushed = self.recorder.as_mut().map_or(Ok(()), |recorder| recorder.push(record));
-        self.told(pushed);
+        match (&mut self.recorder, record) {
+            (Some(recorder), record) => {
+                let pushed = recorder.push(record);
+                self.told(pushed);
+            }
+            (None, Record::Raw(raw)) => self.ring.push(Record::Raw(raw)),
+            (None, _) => {}
+        }
+    }
+
+    /// Remembers what a recording need not hold unless it begins there.
+    pub(super) fn remember(&mut self, raw: Option<Raw>) {
+        if let Some(raw) = raw.filter(|_| self.recorder.is_none()) {
+            self.ring.push(Record::Raw(raw));
+        }
+    }
+
+    /// What was remembered.
+    pub(super) fn take_ring(&mut self) -> PreTrigger {
+        std::mem::replace(&mut self.ring, Self::idle().ring)
     }
 
     /// Does what is due at a time of the world.

@@ -10,12 +10,16 @@
 //! ```
 //!
 //! A session is one recording: its instruments are attached when it begins and detached when it
-//! ends, so that its raw bytes alone give its samples again. The daemon runs one session after the
-//! other; every queue between threads is bounded, and what finds no place is counted.
+//! ends, so that its raw bytes alone give its samples again. While nothing is recorded, by hand or
+//! for want of room, a session remembers the last seconds of its links; the recording that follows
+//! takes over links and seconds, and begins with them (attaching). The daemon runs one session
+//! after the other; every queue between threads is bounded, and what finds no place is counted.
 
 mod attached;
+mod attaching;
 mod daemon;
 mod diagnosing;
+mod ended;
 mod error;
 mod event;
 mod keeping;

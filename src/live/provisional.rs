@@ -130,13 +130,9 @@ impl Offers {
 }
 
 impl Provisional {
-    /// The final report of a run is there; gives what was told of it before, and takes that away.
-    pub(super) fn replaced(&self, found: &FoundRun) -> Vec<Told> {
+    /// The page of a run is there; gives what was told of it before.
+    pub(super) fn told_of(&self, found: &FoundRun) -> Vec<Told> {
         let mut files = self.0.files();
-        // Another run may be under way already, and told.
-        if files.told.last().is_none_or(|newest| newest.start_s < found.end_s) {
-            self.0.remove(&mut files);
-        }
         let told = std::mem::take(&mut files.told);
         let (before, after) = told.into_iter().partition(|told| told.start_s < found.end_s);
         files.told = after;
@@ -145,7 +141,16 @@ impl Provisional {
         of_it
     }
 
-    /// The recording has ended.
+    /// The results hold the runs up to that number, and nothing provisional of them is needed.
+    pub(super) fn replaced(&self, number: u64) {
+        let mut files = self.0.files();
+        // Another run may be under way already, and told.
+        if files.of.is_some_and(|told| told <= number) {
+            self.0.remove(&mut files);
+        }
+    }
+
+    /// The recording has ended, and the results hold its runs.
     pub(super) fn withdraw(&self) {
         self.0.remove(&mut self.0.files());
     }

@@ -69,6 +69,7 @@ impl Reporter<'_> {
     pub(super) fn run(mut self) -> Option<Results> {
         let dir = pipeline::results_folder(self.campaign);
         let mut known: Option<Results> = None;
+        let mut n_reported = 0;
         while let Some(step) = self.results.next_step() {
             let reported = match step {
                 LiveStep::Noted => continue,
@@ -88,7 +89,7 @@ impl Reporter<'_> {
                         self.diagnoser.ask();
                     }
                     let at_ns = self.clock.now_ns();
-                    let told = self.provisional.replaced(&found);
+                    let told = self.provisional.told_of(&found);
                     Some(Reported { found, outcome: Err(reason), at_ns, told })
                 }
                 LiveStep::Identified { found, run, overview } => {
@@ -98,7 +99,7 @@ impl Reporter<'_> {
                         tracing::error!(run = run.id, "page not written: {error}");
                     }
                     let at_ns = self.clock.now_ns();
-                    let told = self.provisional.replaced(&found);
+                    let told = self.provisional.told_of(&found);
                     let outcome = Ok(identified(self.campaign, run));
                     self.diagnoser.hear(Learnt::Run(run, &overview), self.campaign);
                     self.diagnoser.ask();
@@ -109,21 +110,26 @@ impl Reporter<'_> {
             known = known.or_else(|| self.earlier.try_recv().ok().flatten());
             let results = self.shown(known.as_ref(), self.diagnoser.newest().as_ref());
             if let Some(reported) = reported {
+                n_reported = reported.found.number;
                 // A loop that has ended was told everything before.
                 self.events.blocking_send(Event::Reported(Box::new(reported))).ok();
             }
             // Pages of earlier runs would be taken for stale ones before those are known again.
             if known.is_some() {
                 write(self.campaign, &results, self.diagnoser.newest().as_deref(), &dir);
+                self.provisional.replaced(n_reported);
             }
         }
-        self.provisional.withdraw();
         self.events.blocking_send(Event::AllReported).ok();
-        let earlier = known.or_else(|| self.earlier.recv().ok().flatten())?;
+        let Some(earlier) = known.or_else(|| self.earlier.recv().ok().flatten()) else {
+            self.provisional.withdraw();
+            return None;
+        };
         // The next recording does not wait for a diagnosis; only the daemon's end does.
         let diagnosis = self.diagnoser.newest();
         let results = self.shown(Some(&earlier), diagnosis.as_ref());
         write(self.campaign, &results, diagnosis.as_deref(), &dir);
+        self.provisional.withdraw();
         Some(self.results.results(&earlier))
     }
 

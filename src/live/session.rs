@@ -1,5 +1,6 @@
 //! One recording from its first byte to its last, with the threads that it takes.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::sync_channel;
@@ -9,15 +10,16 @@ use devices::clock::{Clock, WallClock};
 use replay::ClosedRecording;
 use tokio::sync::mpsc;
 
+use super::attaching::TakenOver;
 use super::diagnosing::Diagnoser;
+use super::ended::{Ended, Over};
 use super::error::LiveError;
-use super::event::EVENTS_WAITING;
 use super::keeping::{Keeper, fresh_name};
 use super::provisional;
 use super::reporting::Reporter;
 use super::showing::show;
 use super::supervisor::Supervisor;
-use super::under_way::{Ended, State, UnderWay};
+use super::under_way::{State, UnderWay};
 use crate::campaign::{Campaign, Recording};
 use crate::judgement::Judgements;
 use crate::page::{Board, Order};
@@ -38,6 +40,10 @@ pub(super) struct Plan {
     pub(super) rotate_s: f64,
     /// Who does not want it recorded, if anybody.
     pub(super) paused_by: Option<String>,
+    /// Whether it waits for the disk to have room.
+    pub(super) awaits_room: bool,
+    /// What the session before hands over.
+    pub(super) taken_over: Option<TakenOver>,
 }
 
 /// What a session leaves.
@@ -49,6 +55,8 @@ pub(super) struct Left {
     pub(super) results: Option<Results>,
     /// The campaign's recordings, with this one where it is one.
     pub(super) recordings: Vec<Recording>,
+    /// What the next one takes over.
+    pub(super) handed_over: Option<TakenOver>,
 }
 
 /// What the daemon lends to every session.
@@ -62,32 +70,32 @@ pub(super) struct Lent<'l> {
 
 /// Records until something ends the session.
 pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
-    let Plan { mut campaign, text, earlier, diagnoser, rotate_s, paused_by } = plan;
+    let Plan {
+        mut campaign,
+        text,
+        earlier,
+        diagnoser,
+        rotate_s,
+        paused_by,
+        awaits_room,
+        taken_over,
+    } = plan;
     let Lent { runtime, clock, orders, board, supervisor } = lent;
     // Whoever takes a judgement back gets the run again, so that none is laid over these.
     campaign.judgements = Judgements::default();
     let before = &campaign.clone();
-    let name = match &paused_by {
-        None => fresh_name(&campaign.folder, clock, clock.now_ns()),
-        Some(_) => String::new(),
-    };
-    let path = campaign.folder.join(&name);
-    campaign.recordings.push(Recording {
-        name,
-        files: vec![(None, path.clone())],
-        condition: campaign.live.condition.clone(),
-        speed_m_s: campaign.live.speed_m_s,
-        line: None,
-    });
+    let path = named(&mut campaign, clock, paused_by.is_none());
     let campaign = &campaign;
     let keeper = match &paused_by {
+        None if awaits_room => Keeper::waiting(&path),
         None => Keeper::start(&path, text.clone(), clock)?,
         Some(_) => Keeper::idle(),
     };
     board.change(|status| status.paused_by = paused_by);
     let options = Options { keep_histories: false, ..Options::default() };
     let is_ending = &AtomicBool::new(false);
-    let (sender, events) = mpsc::channel(EVENTS_WAITING);
+    let (links, (sender, events)) = TakenOver::or_new(taken_over);
+    let next_sender = sender.clone();
     let (teller, earlier_told) = sync_channel(1);
     let knows_earlier = &AtomicBool::new(false);
     let (recorded, results) = thread::scope(|scope| {
@@ -120,7 +128,7 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
             knows_earlier,
             state: State::default(),
         };
-        let attached = under_way.attach(&sender, text);
+        let attached = under_way.attach(&sender, text, links);
         let reporter = Reporter {
             campaign,
             results,
@@ -143,19 +151,29 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
         };
         (recorded, reporter.join())
     });
-    let (ended, keeper) = recorded?;
-    let reason = match ended {
-        Ended::Terminated => "the daemon was asked to end",
-        Ended::Reloaded(_) => "a new campaign file came into force",
-        Ended::Rotated => "it was long enough",
-        Ended::Paused(_) | Ended::Resumed => "somebody stopped the recording",
-        Ended::RoomAgain => "the disk has room again",
-    };
-    let closed = keeper.close(reason)?;
+    let Over { ended, keeper, links } = recorded?;
+    let closed = keeper.close(ended.reason())?;
     let results = results.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
     let recorded = if closed.is_some() { campaign } else { before };
     let recordings = recorded.recordings.clone();
-    Ok(Left { ended, closed, results, recordings })
+    let handed_over = links.map(|links| TakenOver::new(links, next_sender));
+    Ok(Left { ended, closed, results, recordings, handed_over })
+}
+
+/// Puts the recording that begins now last in the campaign; its path. One that is not recorded has
+/// no name.
+fn named(campaign: &mut Campaign, clock: &WallClock, is_recorded: bool) -> PathBuf {
+    let fresh = || fresh_name(&campaign.folder, clock, clock.now_ns());
+    let name = if is_recorded { fresh() } else { String::new() };
+    let path = campaign.folder.join(&name);
+    campaign.recordings.push(Recording {
+        name,
+        files: vec![(None, path.clone())],
+        condition: campaign.live.condition.clone(),
+        speed_m_s: campaign.live.speed_m_s,
+        line: None,
+    });
+    path
 }
 
 /// What earlier recordings of the campaign say, their pages written again; none when the daemon is

@@ -8,12 +8,13 @@ use std::time::Duration;
 
 use devices::clock::{Clock, WallClock};
 use devices::port::{LinkEvent, LinkThread};
-use devices::{AttachedInstrument, Instrument, Quantity, Sample};
-use replay::{CampaignFile, ClockReading, LinkLosses, Note, Record};
-use tokio::sync::mpsc::{Receiver, Sender};
+use devices::{Quantity, Sample};
+use replay::{LinkLosses, Note};
+use tokio::sync::mpsc::Receiver;
 
 use super::attached::{Attached, Taken};
-use super::error::{LiveError, no_devices};
+use super::ended::{Ended, Over, Reload};
+use super::error::no_devices;
 use super::event::Event;
 use super::keeping::Keeper;
 use super::provisional::Offers;
@@ -38,29 +39,6 @@ const RELOAD_REST_S: f64 = 1.0;
 const BEGIN_AGAIN_S: f64 = 5.0;
 /// Rest [s] before one recording gives way to the next for its length alone.
 const ROTATE_REST_S: f64 = 30.0;
-
-/// Why a recording ended.
-pub(super) enum Ended {
-    /// The daemon is to end.
-    Terminated,
-    /// A new campaign file is in force.
-    Reloaded(Box<Reload>),
-    /// The recording was long enough.
-    Rotated,
-    /// Somebody, who is named, wants no recording for a while.
-    Paused(String),
-    /// It is wanted again.
-    Resumed,
-    /// The disk has room again.
-    RoomAgain,
-}
-
-/// A campaign file that was read again.
-pub(super) struct Reload {
-    pub(super) campaign: Campaign,
-    /// Its text, as it was when it was read.
-    pub(super) text: String,
-}
 
 /// A recording under way.
 pub(super) struct UnderWay<'a> {
@@ -112,69 +90,12 @@ pub(super) struct State {
 }
 
 impl UnderWay<'_> {
-    /// Attaches every device and records what is known of them.
-    pub(super) fn attach(&mut self, events: &Sender<Event>, text: String) -> Result<(), LiveError> {
-        let now_ns = self.clock.now_ns();
-        let time_s = now_ns as f64 / 1e9;
-        self.state.began_ns = now_ns;
-        (self.state.moved_ns, self.state.roll_ns) = (now_ns, now_ns);
-        self.keeper.push(Record::Campaign(CampaignFile { time_s, text }));
-        self.read_clocks();
-        let live = &self.campaign.live;
-        for (device, config) in live.devices.iter().enumerate() {
-            let clock = Arc::clone(self.clock) as Arc<dyn Clock>;
-            let events = events.clone();
-            let outlet = move |link| events.try_send(Event::Link { device, link }).is_ok();
-            let AttachedInstrument { thread, interpreter, latency_s } =
-                Instrument::attach(config, clock, Box::new(outlet))?;
-            self.state.ports.push(thread);
-            let of_name = live.setups.iter().find(|setup| setup.name == config.name);
-            let profile = of_name.map_or("", |setup| setup.profile.as_str());
-            let records = Attached::introduction(config, profile, latency_s, time_s)?;
-            for record in records {
-                self.keeper.push(record);
-            }
-            self.state.attached.push(Attached::new(config, interpreter));
-        }
-        self.supervisor.ready("recording");
-        let (campaign, state) = (self.campaign, &self.state);
-        self.board.change(|status| {
-            status.campaign.clone_from(&campaign.name);
-            status.condition.clone_from(&campaign.live.condition);
-            let recording = campaign.recordings.last();
-            status.recording = recording.map_or(String::new(), |last| last.name.clone());
-            status.n_sessions += 1;
-            status.tank_length_m = campaign.tank.length_m;
-            status.froude_one_m_s = campaign.hull.speed_m_s(1.0, &campaign.water);
-            status.devices = state.attached.iter().map(Attached::status).collect();
-            status.reload_waits = false;
-        });
-        let channels = live.devices.iter().flat_map(|device| &device.channels);
-        let strips: Vec<Quantity> = channels.map(|channel| channel.quantity).collect();
-        let clock_speed = 1.0 / self.clock.real(1_000_000_000).as_secs_f64();
-        let names = strips.iter().map(|quantity| quantity.name()).collect();
-        self.board.strips().go_on(names, clock_speed);
-        self.state.strips = strips;
-        Ok(())
-    }
-
-    /// Both clocks at once: what differs between two such records is a step or a drift.
-    fn read_clocks(&mut self) {
-        let monotonic_ns = self.clock.now_ns();
-        self.keeper.push(Record::Clock(ClockReading {
-            time_s: monotonic_ns as f64 / 1e9,
-            monotonic_ns,
-            realtime_ns: u64::try_from(WallClock::unix_ns()).unwrap_or_default(),
-            tai_offset_s: WallClock::tai_offset_s(),
-        }));
-    }
-
     /// Takes events until the recording has ended and every run of it was reported.
     pub(super) async fn record(
         mut self,
         mut events: Receiver<Event>,
         orders: &mut Receiver<Order>,
-    ) -> (Ended, Keeper) {
+    ) -> Over {
         let mut ticks = tokio::time::interval(TICK);
         ticks.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
         loop {
@@ -202,27 +123,53 @@ impl UnderWay<'_> {
                 Event::Tick => self.tick(),
             }
             // The ports were closed when the end began, so that nothing comes behind these.
-            if self.state.ended.is_some() && events.is_empty() {
+            // Links that are handed over never fall silent, and nothing of theirs is waited for.
+            let ended = self.state.ended.as_ref();
+            if ended.is_some_and(|ended| ended.hands_over() || events.is_empty()) {
                 self.end_runs();
             }
             if self.state.all_reported
                 && let Some(ended) = self.state.ended.take()
             {
                 self.renew_status();
-                return (ended, self.keeper);
+                let links = ended.hands_over().then(|| {
+                    let State { attached, ports, .. } = self.state;
+                    ((attached, ports, self.keeper.take_ring()), events)
+                });
+                return Over { ended, keeper: self.keeper, links };
             }
         }
     }
 
     fn link(&mut self, device: usize, link: &LinkEvent) {
         let now_ns = self.clock.now_ns();
-        let now_s = now_ns as f64 / 1e9;
+        let taken = self.taken(device, link, now_ns);
+        self.show(&taken.samples);
+        self.find_runs(taken, link.at_ns().unwrap_or(now_ns));
+    }
+
+    /// Takes what happened on a link before this recording was asked for; pages have shown it.
+    pub(super) fn link_before(&mut self, device: usize, link: &LinkEvent) {
+        let now_ns = self.clock.now_ns();
+        let at_ns = link.at_ns().unwrap_or(now_ns);
+        let taken = self.taken(device, link, at_ns);
+        self.find_runs(taken, at_ns);
+    }
+
+    /// Records what happened on a link; gives what it means.
+    fn taken(&mut self, device: usize, link: &LinkEvent, now_ns: u64) -> Taken {
         let mut taken = std::mem::take(&mut self.state.taken);
         if let Some(attached) = self.state.attached.get_mut(device) {
-            attached.take(link, now_s, &mut self.state.losses, &mut taken);
+            attached.take(link, now_ns as f64 / 1e9, &mut self.state.losses, &mut taken);
         }
+        self.keeper.remember(taken.joint.take());
         taken.records.drain(..).for_each(|record| self.keeper.push(record));
-        self.samples(&taken, link.at_ns().unwrap_or(now_ns));
+        taken
+    }
+
+    /// Hands samples to the run finder, and tells what it has found.
+    fn find_runs(&mut self, mut taken: Taken, at_ns: u64) {
+        self.samples(&taken, at_ns);
         taken.samples.clear();
         taken.counted.clear();
         self.state.taken = taken;
@@ -257,7 +204,6 @@ impl UnderWay<'_> {
         if samples.iter().any(|sample| sample.quantity == Quantity::Roll) {
             self.state.roll_ns = at_ns;
         }
-        self.show(samples);
         // What is not recorded would be missing in a replay.
         let Some(runs) = self.runs.as_mut().filter(|_| self.keeper.records()) else { return };
         runs.push(samples, counted, &mut self.state.found);
@@ -285,6 +231,9 @@ impl UnderWay<'_> {
             self.state.ended = Some(ended);
         }
         self.is_ending.store(true, Ordering::Release);
+        if self.state.ended.as_ref().is_some_and(Ended::hands_over) {
+            return;
+        }
         self.state.ports.iter().for_each(LinkThread::stop);
         self.state.ports.clear();
     }
@@ -292,7 +241,8 @@ impl UnderWay<'_> {
     /// The last event of the last port was taken.
     fn end_runs(&mut self) {
         // Without a recording nothing has ended; the telling end notes that this one is gone.
-        let Some(runs) = self.runs.take().filter(|_| self.keeper.records()) else { return };
+        let is_recorded = self.keeper.records() || self.keeper.broke_off();
+        let Some(runs) = self.runs.take().filter(|_| is_recorded) else { return };
         let mut notes: Vec<Note> = Vec::new();
         self.state.losses.notes(&mut notes);
         self.read_clocks();
@@ -352,6 +302,10 @@ impl UnderWay<'_> {
         if let Some(wanted) = state.wanted.take() {
             return Some(wanted);
         }
+        // What comes from here on belongs to the next recording, once there is room.
+        if self.keeper.broke_off() {
+            return Some(Ended::BrokenOff);
+        }
         let roll_is_away = since_s(state.roll_ns) > ROLL_AWAY_S;
         let rested_s = if roll_is_away { f64::INFINITY } else { since_s(state.moved_ns) };
         if rested_s < RELOAD_REST_S {
@@ -366,8 +320,7 @@ impl UnderWay<'_> {
         }
         let is_long = age_s >= self.rotate_s && rested_s >= ROTATE_REST_S && !roll_is_away;
         // On a full disk no other could begin.
-        let is_recorded = self.keeper.records() && !self.keeper.progress().stopped;
-        (is_long && is_recorded).then_some(Ended::Rotated)
+        (is_long && self.keeper.records()).then_some(Ended::Rotated)
     }
 
     fn renew_status(&mut self) {

@@ -2,9 +2,14 @@
 
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::{Arc, PoisonError, RwLock};
 
 use super::Learnt;
+use super::histories;
+use super::shelf::{Lying, Shelf};
 use crate::campaign::Campaign;
 use crate::diagnosis::{self, Diagnosis, Gathered, Observation, Reversed};
 use crate::judgement::{Judgements, Place};
@@ -26,6 +31,8 @@ const NEAR: [f64; 2] = [0.02, 0.03];
 pub struct Observed {
     observations: Vec<Seen>,
     reversed: Vec<Reversed>,
+    /// Where series lie; none keeps them in memory.
+    shelf: Option<Arc<RwLock<Shelf>>>,
     left_out: Vec<String>,
     /// The last runs, of which it is not known yet what came after them.
     last: VecDeque<LastHeard>,
@@ -38,11 +45,18 @@ pub struct Observed {
 #[derive(Debug, Clone)]
 struct Seen {
     place: Place,
-    alone: Observation,
+    alone: Shelved,
     /// The same with what the model did after it.
-    whole: Option<Observation>,
+    whole: Option<Shelved>,
     /// Whether it lies in what the model did after an earlier one.
     is_within: bool,
+}
+
+/// An observation with the place of its series, when they are not with it.
+#[derive(Debug, Clone)]
+struct Shelved {
+    observation: Observation,
+    lying: Option<Lying>,
 }
 
 /// What is remembered of a run until it is known what came after it.
@@ -53,6 +67,15 @@ struct LastHeard {
 }
 
 impl LastHeard {
+    /// A run without the histories that only its page shows.
+    fn of(run: &IdentifiedRun, order: usize) -> Self {
+        let mut remembered = run.clone();
+        histories::drop_from(&mut remembered);
+        remembered.run.roll.clone_from(&run.run.roll);
+        remembered.run.drive.clone_from(&run.run.drive);
+        Self { run: remembered, order }
+    }
+
     /// Whether a decay is a later part of this one: what water in the hull or a memory did before
     /// it began is not known.
     fn goes_on_in(&self, run: &IdentifiedRun) -> bool {
@@ -87,6 +110,16 @@ fn begin_with(run: &mut IdentifiedRun, release: &Aftermath) {
 }
 
 impl Observed {
+    /// Nothing heard yet; what a diagnosis reads sample by sample waits for it on the disk of a
+    /// folder, so that a day of runs takes no memory.
+    ///
+    /// # Errors
+    /// What the system said when there can be no file.
+    pub fn on_disk(folder: &Path) -> io::Result<Self> {
+        let shelf = Some(Arc::new(RwLock::new(Shelf::in_folder(folder)?)));
+        Ok(Self { shelf, ..Self::default() })
+    }
+
     /// Takes a run whose histories are still with it, or what came after one.
     pub fn hear(&mut self, learnt: Learnt<'_>, campaign: &Campaign) {
         match learnt {
@@ -110,11 +143,12 @@ impl Observed {
         if self.last.len() == MOST_REMEMBERED {
             self.last.pop_front();
         }
-        self.last.push_back(LastHeard { run: run.clone(), order: self.n_runs });
+        self.last.push_back(LastHeard::of(run, self.n_runs));
         match observation {
             Ok(alone) => {
                 let (start_s, end_s) = (run.run.start_s, run.run.end_s);
                 let place = Place { recording: run.recording.clone(), start_s, end_s };
+                let alone = self.put_down(alone);
                 self.observations.push(Seen { place, alone, whole: None, is_within: false });
             }
             Err(reason) => self.left_out.push(format!("{}: {reason}", run.id)),
@@ -155,14 +189,41 @@ impl Observed {
         if let Err(reason) = &whole {
             tracing::debug!(id, reason, "not joined");
         }
+        let whole = whole.ok().map(|whole| self.put_down(whole));
         for seen in &mut self.observations {
-            if seen.alone.id == id {
-                seen.whole = whole.clone().ok();
+            if seen.alone.observation.id == id {
+                seen.whole.clone_from(&whole);
             } else {
                 seen.is_within |=
                     seen.place.recording == recording && lies_within(seen.place.start_s);
             }
         }
+    }
+
+    /// Puts the series of a run on the shelf; where there is no room for them they stay with it.
+    fn put_down(&self, mut observation: Observation) -> Shelved {
+        let Some(shelf) = &self.shelf else { return Shelved { observation, lying: None } };
+        let mut shelf = shelf.write().unwrap_or_else(PoisonError::into_inner);
+        let put = shelf.put(&observation.series_mut().map(|values| values.as_slice()));
+        let lying = put.inspect_err(|error| tracing::warn!("kept in memory: {error}")).ok();
+        if lying.is_some() {
+            observation.series_mut().into_iter().for_each(|values| *values = Vec::new());
+        }
+        Shelved { observation, lying }
+    }
+
+    /// A run with its series, wherever they are; none when its disk does not give them back.
+    fn taken_up(shelf: Option<&Shelf>, shelved: &Shelved) -> Option<Observation> {
+        let Shelved { mut observation, lying } = shelved.clone();
+        if let Some((shelf, lying)) = shelf.zip(lying) {
+            let series = shelf.get(&lying).inspect_err(|error| {
+                tracing::error!(run = observation.id, "left out of the diagnosis: {error}");
+            });
+            for (values, again) in observation.series_mut().into_iter().zip(series.ok()?) {
+                *values = again;
+            }
+        }
+        Some(observation)
     }
 
     /// The same without the runs that were rejected by hand.
@@ -171,10 +232,9 @@ impl Observed {
         let left_out = &mut self.left_out;
         self.observations.retain(|Seen { place, alone, .. }| {
             let rejection = judgements.rejection(&place.recording, place.start_s, place.end_s);
-            left_out
-                .extend(rejection.map(|rejection| {
-                    format!("{}: rejected by hand by {}", alone.id, rejection.by)
-                }));
+            left_out.extend(rejection.map(|rejection| {
+                format!("{}: rejected by hand by {}", alone.observation.id, rejection.by)
+            }));
             rejection.is_none()
         });
         self
@@ -198,11 +258,15 @@ impl Observed {
     /// because of it.
     pub fn diagnosed(self, campaign: &Campaign) -> Option<Diagnosis> {
         let diagnosed = catch_unwind(AssertUnwindSafe(|| {
+            let shelf = self.shelf.as_deref().map(RwLock::read);
+            let shelf = shelf.map(|shelf| shelf.unwrap_or_else(PoisonError::into_inner));
+            let take = |shelved: &Shelved| Self::taken_up(shelf.as_deref(), shelved);
             let has_more = self.observations.iter().any(|seen| seen.whole.is_some());
             let whole = self.observations.iter().filter(|seen| has_more && !seen.is_within);
-            let whole = whole.map(|seen| seen.whole.as_ref().unwrap_or(&seen.alone).clone());
+            let whole = whole.filter_map(|seen| take(seen.whole.as_ref().unwrap_or(&seen.alone)));
             let whole = whole.collect();
-            let runs = self.observations.into_iter().map(|seen| seen.alone).collect();
+            let runs = self.observations.iter().filter_map(|seen| take(&seen.alone)).collect();
+            drop(shelf);
             let gathered = Gathered { runs, whole, reversed: self.reversed };
             diagnosis::diagnose(gathered, &campaign.tank)
         }));
@@ -213,6 +277,17 @@ impl Observed {
             );
             None
         })
+    }
+
+    /// Memory that the series of its runs take between two diagnoses [bytes], beside the records
+    /// of the last few, of which it is not known yet what came after them.
+    pub fn series_bytes(&self) -> usize {
+        let of = |Shelved { observation: one, .. }: &Shelved| {
+            let series = [&one.roll_time_s, &one.roll_rad, &one.moment_time_s, &one.moment_n_m];
+            series.map(|values| size_of::<f64>() * values.capacity()).iter().sum::<usize>()
+        };
+        let each = self.observations.iter();
+        each.map(|seen| of(&seen.alone) + seen.whole.as_ref().map_or(0, of)).sum()
     }
 
     /// Whether no run is left to be diagnosed.
@@ -227,7 +302,8 @@ impl Observed {
 
     /// Lets go of the second of the runs that have most like them: the first and the last stay.
     fn let_go_of_a_repeat(&mut self) {
-        let kind = |Seen { alone: run, .. }: &Seen| -> (String, RunKind, [i64; 3]) {
+        let kind = |Seen { alone, .. }: &Seen| -> (String, RunKind, [i64; 3]) {
+            let run = &alone.observation;
             let at = &run.at;
             let place = |value: f64, near: f64| (value / near).round() as i64;
             let rolling = if at.kind == RunKind::Forced { place(at.rolling_rad_s, 0.2) } else { 0 };

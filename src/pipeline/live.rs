@@ -165,12 +165,11 @@ impl LiveResults<'_> {
                 let identified = identified.recv().ok()?;
                 let reversed = identified.reversed(self.collector.campaign());
                 let reason = identified.identification.as_ref().err().cloned();
-                match self.collector.keep(index, identified, &found.brought) {
-                    Some(run) => LiveStep::Identified { found, run, overview },
-                    None => {
-                        let reason = reason.unwrap_or_default();
-                        LiveStep::Refused { found, reason, reversed }
-                    }
+                if let Some(run) = self.collector.keep(index, identified, &found.brought) {
+                    LiveStep::Identified { found, run, overview }
+                } else {
+                    let reason = reason.unwrap_or_default();
+                    LiveStep::Refused { found, reason, reversed }
                 }
             }
             Heard::Rejected { index, rejection } => {

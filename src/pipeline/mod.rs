@@ -20,6 +20,7 @@ mod play;
 mod printing;
 mod read_ahead;
 mod sha256;
+mod shelf;
 mod so_far;
 mod survey;
 mod workers;

@@ -339,7 +339,9 @@ impl Motion {
         self.unused = Some(Unused::new(end_s, Cause::After(end, why)));
         let n_used = cycles.iter().take_while(|c| c.half.start.time_s < end_s - 1e-9).count();
         let behind = cycles.split_off(n_used);
-        behind.iter().for_each(|cycle| closer.follow(cycle));
+        for cycle in &behind {
+            closer.follow(cycle);
+        }
         if n_used < forced::N_SETTLED {
             // Each round must use up some, so that rounds come to an end.
             self.set_aside(&behind, end_s);

@@ -107,6 +107,8 @@ pub struct Session {
     waiting: Option<Waiting>,
     /// When the bus was last told to hold its readings.
     held: Option<(u64, u64)>,
+    /// When the round that the last poll began was due.
+    round_due_ns: Option<u64>,
 }
 
 impl Session {
@@ -124,6 +126,7 @@ impl Session {
             cycle_start_ns: 0,
             waiting: None,
             held: None,
+            round_due_ns: None,
         }
     }
 
@@ -148,6 +151,23 @@ impl Session {
         self.held = None;
     }
 
+    /// Goes on with a conversation that another session led up to the round that was due then.
+    pub fn join(&mut self, due_ns: u64) {
+        self.open(due_ns);
+        self.opening.clear();
+        (self.ready_ns, self.cycle_start_ns) = (due_ns, due_ns);
+    }
+
+    /// Whether it asks round by round; other instruments tell by themselves.
+    pub fn asks(&self) -> bool {
+        !self.cycle.is_empty()
+    }
+
+    /// When the round was due that the last [`Session::poll`] began, if it began one [ns].
+    pub fn round_due_ns(&self) -> Option<u64> {
+        self.round_due_ns
+    }
+
     /// When [`Session::poll`] has something to do [ns]; none when only bytes can move things.
     pub fn wake_ns(&self) -> Option<u64> {
         if let Some(waiting) = &self.waiting {
@@ -162,6 +182,7 @@ impl Session {
     /// Gives up on what is overdue, and appends what is to be sent now.
     pub fn poll(&mut self, now_ns: u64, send: &mut Vec<u8>, decoded: &mut Vec<Decoded>) {
         self.expire(now_ns, decoded);
+        self.round_due_ns = None;
         if self.waiting.is_some() || self.wake_ns().is_none_or(|wake| wake > now_ns) {
             return;
         }
@@ -188,6 +209,7 @@ impl Session {
         if self.next == 0 {
             self.held = None;
             let due_ns = self.cycle_start_ns;
+            self.round_due_ns = Some(due_ns);
             let n_cycles = (now_ns - due_ns).checked_div(self.pace.period_ns).unwrap_or(0);
             if n_cycles > 0 {
                 decoded.push(Decoded::Missed { n_cycles });

@@ -16,6 +16,13 @@ pub enum LinkEvent {
         /// When.
         at_ns: u64,
     },
+    /// A round of questions begins; a session that has heard nothing before can go on from here.
+    Round {
+        /// When.
+        at_ns: u64,
+        /// When it was due.
+        due_ns: u64,
+    },
     /// Bytes were sent.
     Sent {
         /// Just before they were written.
@@ -74,6 +81,7 @@ impl LinkEvent {
     pub fn at_ns(&self) -> Option<u64> {
         match self {
             Self::Opened { at_ns }
+            | Self::Round { at_ns, .. }
             | Self::Sent { at_ns, .. }
             | Self::Received { at_ns, .. }
             | Self::Waited { at_ns, .. }

@@ -221,6 +221,9 @@ impl Link {
             }
             return Ok(());
         }
+        if let Some(due_ns) = self.session.round_due_ns() {
+            self.outlet.send(LinkEvent::Round { at_ns, due_ns });
+        }
         let written = port.write(&bytes);
         self.outlet.send(LinkEvent::Sent { at_ns, bytes, decoded });
         written

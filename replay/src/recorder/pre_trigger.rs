@@ -3,8 +3,6 @@
 use std::collections::VecDeque;
 use std::mem::size_of;
 
-use super::Recorder;
-use crate::error::ReplayError;
 use crate::record::Record;
 
 /// Devices, calibrations and campaign files remembered; far more than a tank has.
@@ -56,19 +54,16 @@ impl PreTrigger {
         }
     }
 
-    /// Gives everything to a recorder that was just started, oldest first, and begins anew.
-    ///
-    /// # Errors
-    /// As [`Recorder::push`]; what was not yet given stays in the ring.
-    pub fn pour_into(&mut self, recorder: &mut Recorder) -> Result<(), ReplayError> {
-        for record in &self.standing {
-            recorder.push(record.clone())?;
-        }
-        while let Some(record) = self.ring.pop_front() {
-            self.bytes -= bytes_of(&record);
-            recorder.push(record)?;
-        }
-        Ok(())
+    /// Gives everything for a recording that was just started, what stands first and then the
+    /// oldest, and begins anew.
+    pub fn pour(&mut self) -> impl Iterator<Item = Record> {
+        self.bytes = 0;
+        self.standing.clone().into_iter().chain(self.ring.drain(..))
+    }
+
+    /// Time of the oldest record in the ring [s].
+    pub fn begins_s(&self) -> Option<f64> {
+        Some(self.ring.front()?.time_s())
     }
 
     /// Records in the ring.
