@@ -108,10 +108,11 @@ pub(super) fn contains(rival: &str, favourite: &str) -> bool {
         })
 }
 
-/// Whether the form of an effect stands for many that differ a little: waves, memories, hands.
+/// Whether the form of an effect stands for many that differ a little: waves, memories, hands, a
+/// ringing.
 pub(super) fn is_approximate(id: &str) -> bool {
     effects::effect(id).is_some_and(|effect| {
-        effect.layer == Layer::Tank || matches!(effect.acts, Acts::Lagging(_))
+        effect.layer == Layer::Tank || matches!(effect.acts, Acts::Lagging(_) | Acts::Chain(..))
     })
 }
 

@@ -6,7 +6,7 @@ use super::leftover::Leftover;
 use super::settle::Settled;
 use super::survey::Survey;
 use super::trial::Tried;
-use crate::model::Scope;
+use crate::model::{Scope, effects};
 
 /// Least logarithm of a Bayes factor at which an effect may enter beside another: no form fits the
 /// first to the last digit.
@@ -20,8 +20,8 @@ const CRUMB_OF_EACH_RUN: f64 = 0.25;
 /// What an effect takes of what is left, over the logarithm of its Bayes factor, where that is
 /// what speaks for it; it would be two if nothing else did.
 const OF_LEFTOVER: f64 = 0.5;
-/// Share of the evidence of an approximate effect below which another is a want of its form.
-const CRUMB_OF_EVIDENCE: f64 = 0.01;
+/// Share of the evidence of an effect below which another may be a want of its form.
+pub(super) const CRUMB_OF_EVIDENCE: f64 = 0.01;
 
 /// What becomes of the best effect.
 pub(super) enum Best {
@@ -91,9 +91,16 @@ fn is_crumb_of(known: &Entered, newest: &Entered, settled: &Settled) -> bool {
     let is_little = newest.log_bayes_factor < CRUMB_OF_EVIDENCE * known.log_bayes_factor;
     let share = if is_of_each_run { CRUMB_OF_EACH_RUN } else { CRUMB };
     let is_of_form = is_approximate(known.id)
-        && is_of_leftover(newest.removed, newest.log_bayes_factor)
+        && (is_of_leftover(newest.removed, newest.log_bayes_factor)
+            || is_of_one_layer(known, newest))
         && (newest.removed < share * known.removed || is_little);
     is_of_form || (is_of_each_run && is_little)
+}
+
+/// Whether two effects are of one layer, where the form of one may want what the other has.
+fn is_of_one_layer(known: &Entered, newest: &Entered) -> bool {
+    let layer = |id| effects::effect(id).map(|effect| effect.layer);
+    layer(known.id) == layer(newest.id)
 }
 
 /// Whether what an effect takes of what is left is what speaks for it.

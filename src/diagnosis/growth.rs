@@ -2,7 +2,7 @@
 
 use super::alike::SAME;
 use super::backward::{check_backward, instead};
-use super::entry::{Best, best};
+use super::entry::{Best, CRUMB_OF_EVIDENCE, best};
 use super::leftover::{self, Leftover};
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score};
@@ -208,22 +208,25 @@ fn step(
     for (effect, log) in &implausible {
         tracing::debug!(effect, log, "outside its physical range");
     }
-    let is_unnamed = none_of_them(&current, &plausible);
+    let is_unnamed = none_of_them(&current, &plausible, entered);
     let known: Vec<Tried> =
         plausible.into_iter().filter(|one| !effects::is_unnamed(one.id)).collect();
     let best = if is_unnamed { Best::None } else { best(survey, &current, known, entered) };
     Some(Step { best, noise, ranking, implausible, is_unnamed })
 }
 
-/// Whether a law of no known cause explains the runs better than every effect, best first, does.
-fn none_of_them(current: &Settled, plausible: &[Tried]) -> bool {
+/// Whether a law of no known cause explains the runs better than every effect, best first, does,
+/// and more than the want of a form that is known already.
+fn none_of_them(current: &Settled, plausible: &[Tried], entered: &[Entered]) -> bool {
     let Some(best) = plausible.first().filter(|one| effects::is_unnamed(one.id)) else {
         return false;
     };
     let second = plausible[1..].iter().map(|one| one.settled.log_evidence).next();
     let others = second.map_or(current.log_evidence, |log| log.max(current.log_evidence));
-    best.settled.log_evidence > current.log_evidence + ENTERS
+    let log = best.settled.log_evidence - current.log_evidence;
+    log > ENTERS
         && best.settled.log_evidence > others + 0.5 * SAME
+        && entered.iter().all(|known| log > CRUMB_OF_EVIDENCE * known.log_bayes_factor)
 }
 
 fn sort(tried: &mut [Tried]) {

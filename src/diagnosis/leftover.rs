@@ -16,6 +16,8 @@ pub struct Leftover {
     pub channel: &'static str,
     /// Root mean square of what is left, in the channel's unit.
     pub rms: f64,
+    /// Root mean square of what the channel reads about its mean, in its unit.
+    pub motion_rms: f64,
     /// Power of the roll's band above the noise, as a share of the channel's variance [-].
     pub share: f64,
     /// The share that an error of the clock leaves of any roll [-].
@@ -124,6 +126,7 @@ fn channel_leftover(
         run: run.id.clone(),
         channel,
         rms,
+        motion_rms: variance.sqrt(),
         share: ((sum - n_band) * mean_noise / n as f64 * 2.0 / variance.max(1e-30)).max(0.0),
         clock_share: 0.0,
         band_z: (sum - n_band) / sd,

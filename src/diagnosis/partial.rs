@@ -5,7 +5,17 @@ use super::leftover::Leftover;
 
 /// Share of what was left before beyond which causes are no whole story; by trial on simulated
 /// campaigns, of whose catalogued effects it takes only free surfaces from their names.
-pub(super) const MOST_LEFT: f64 = 0.1;
+const MOST_LEFT: f64 = 0.1;
+
+/// Whether causes leave too much of what they found: of what was left in the band of the roll, or
+/// of all that they took away, be it a ringing far above it.
+pub(super) fn is_part(before: &[Leftover], after: &[Leftover], untold: &[Leftover]) -> bool {
+    let taken = before.iter().zip(after).map(|(before, after)| {
+        (before.rms.powi(2) - after.rms.powi(2)) / before.motion_rms.powi(2).max(1e-30)
+    });
+    let found = sure_share(before).max(taken.sum());
+    untold.iter().any(Leftover::is_sure) && sure_share(untold) > MOST_LEFT * found
+}
 
 /// How many of the last effects are only a part of what they found, the first excepted: under all
 /// of them together too much of it is left for sure.

@@ -1,11 +1,11 @@
 //! What is told of a campaign: verdict, causes in order of entry, gain, bias, what is left.
 
 use super::gain::{self, HeldOut};
-use super::growth::{Grown, leftovers, sure_share};
+use super::growth::{Grown, leftovers};
 use super::layout::Layout;
 use super::leftover::Leftover;
 use super::next_run::{NextRun, next_run};
-use super::partial::{MOST_LEFT, n_parts};
+use super::partial::{is_part, n_parts};
 use super::records::Shown;
 use super::reversed::{self, Reversed};
 use super::settle::Settled;
@@ -135,8 +135,7 @@ pub(super) fn told(
     // Parts stay in the model, where they keep their share from the causes.
     let parts = causes.split_off(causes.len() - n_parts(&grown.entered, &untold_left));
     let mut suspects: Vec<&'static str> = parts.iter().map(|part| part.effect).collect();
-    let is_left = untold_left.iter().any(Leftover::is_sure);
-    let is_part = is_left && sure_share(&untold_left) > MOST_LEFT * sure_share(&left_before);
+    let is_part = is_part(&left_before, &left_after, &untold_left);
     let untold = is_part || grown.is_unnamed;
     if untold {
         suspects.splice(0..0, causes.drain(..).map(|cause| cause.effect));

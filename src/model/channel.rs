@@ -2,7 +2,7 @@
 
 use std::array;
 
-use super::effect::{Acts, Instant};
+use super::effect::{Acts, Instant, Law};
 use super::number::{N_SLOPES, Sloped};
 use super::term::{N_BASE, Term};
 
@@ -14,6 +14,7 @@ fn acts_on(term: &Term, channel: usize) -> bool {
     match term.effect.acts {
         Acts::Roll(_) => channel == 0,
         Acts::Drive(_) => channel == 1,
+        Acts::Chain(..) => true,
         _ => false,
     }
 }
@@ -23,11 +24,22 @@ pub(super) fn is_read_through(terms: &[Term], channel: usize) -> bool {
     terms.iter().any(|term| acts_on(term, channel))
 }
 
-/// What an effect adds to the readings of its channel.
-fn added(term: &Term, values: &[f64], instants: &[Instant<'_>]) -> Vec<f64> {
+/// The law by which an effect adds to a channel, value by value.
+fn law_of(term: &Term, channel: usize) -> Option<Law> {
+    match term.effect.acts {
+        Acts::Drive(law) if channel == 1 => Some(law),
+        Acts::Chain(roll, moment) => Some(if channel == 0 { roll } else { moment }),
+        _ => None,
+    }
+}
+
+/// What an effect adds to the readings of a channel.
+fn added(term: &Term, channel: usize, values: &[f64], instants: &[Instant<'_>]) -> Vec<f64> {
+    if let Some(law) = law_of(term, channel) {
+        return instants.iter().map(|i| (law.plain)(i, values)).collect();
+    }
     match term.effect.acts {
         Acts::Roll(reading) => (reading.plain)(instants, values),
-        Acts::Drive(law) => instants.iter().map(|i| (law.plain)(i, values)).collect(),
         _ => Vec::new(),
     }
 }
@@ -35,7 +47,7 @@ fn added(term: &Term, values: &[f64], instants: &[Instant<'_>]) -> Vec<f64> {
 /// Adds what the effects on a channel add to its readings.
 pub(super) fn add(terms: &[Term], channel: usize, instants: &[Instant<'_>], readings: &mut [f64]) {
     for term in terms.iter().filter(|term| acts_on(term, channel)) {
-        let added = added(term, &term.values, instants);
+        let added = added(term, channel, &term.values, instants);
         readings.iter_mut().zip(added).for_each(|(reading, more)| *reading += more);
     }
 }
@@ -54,7 +66,7 @@ pub(super) fn add_candidates(
     for candidate in candidates {
         for (values, step) in candidate.nudged_each() {
             if acts_on(candidate, channel) && (candidate.effect.shows)(instants[0].run) {
-                let added = added(candidate, &values, instants);
+                let added = added(candidate, channel, &values, instants);
                 let rows = columns[column][first..].iter_mut();
                 rows.zip(added).for_each(|(row, more)| *row += more / step);
             }
@@ -107,11 +119,9 @@ pub(super) fn add_tangents(
                 })
                 .collect();
             parameter += term.values.len();
-            let added: Vec<Sloped> = match term.effect.acts {
-                Acts::Roll(reading) if channel == 0 => (reading.sloped)(&sloped, &values),
-                Acts::Drive(law) if channel == 1 => {
-                    sloped.iter().map(|i| (law.sloped)(i, &values)).collect()
-                }
+            let added: Vec<Sloped> = match (law_of(term, channel), term.effect.acts) {
+                (Some(law), _) => sloped.iter().map(|i| (law.sloped)(i, &values)).collect(),
+                (None, Acts::Roll(reading)) if channel == 0 => (reading.sloped)(&sloped, &values),
                 _ => continue,
             };
             for column in here.clone() {

@@ -261,6 +261,8 @@ pub enum Acts {
     Roll(Reading),
     /// What the moment channel adds [N m].
     Drive(Law),
+    /// What the roll channel adds [rad], and the moment channel [N m].
+    Chain(Law, Law),
     /// Seen in the record alone; it disturbs no estimate but the noise.
     Record(fn(&Facts) -> Option<Seen>),
 }

@@ -323,7 +323,7 @@ fn pushes(
                             .collect(),
                     )
                 }
-                Acts::Roll(_) | Acts::Drive(_) | Acts::Record(_) => None,
+                Acts::Roll(_) | Acts::Drive(_) | Acts::Chain(..) | Acts::Record(_) => None,
             }
         })
         .collect()

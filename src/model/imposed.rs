@@ -173,7 +173,11 @@ impl<'a> Imposed<'a> {
                     });
                     sum -= (lag.moment.plain)(instant, values, &states);
                 }
-                Acts::Echo(_) | Acts::Roll(_) | Acts::Drive(_) | Acts::Record(_) => {}
+                Acts::Echo(_)
+                | Acts::Roll(_)
+                | Acts::Drive(_)
+                | Acts::Chain(..)
+                | Acts::Record(_) => {}
             }
         }
         sum + inertia * instant.acceleration_rad_per_s2

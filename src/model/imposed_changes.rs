@@ -239,7 +239,7 @@ impl<'a> Changes<'a> {
                         lag_place += 1;
                         (of, -1.0)
                     }
-                    Acts::Roll(_) | Acts::Drive(_) | Acts::Record(_) => continue,
+                    Acts::Roll(_) | Acts::Drive(_) | Acts::Chain(..) | Acts::Record(_) => continue,
                 };
                 let motion = [slope::ROLL, slope::RATE, slope::ACCELERATION];
                 whole.iter_mut().zip(motion).for_each(|(whole, k)| *whole += by * of.slopes[k]);
@@ -286,7 +286,7 @@ impl<'a> Changes<'a> {
                             instant.acceleration_rad_per_s2 * (law.plain)(instant, values) / by
                         }
                         Acts::Lagging(lag) => -(lag.moment.plain)(instant, values, &states) / by,
-                        Acts::Roll(_) | Acts::Drive(_) | Acts::Record(_) => 0.0,
+                        Acts::Roll(_) | Acts::Drive(_) | Acts::Chain(..) | Acts::Record(_) => 0.0,
                     };
                 }
                 next += 1;

@@ -7,8 +7,11 @@ use crate::model::number::Number;
 pub(super) const EFFECT: Effect = Effect {
     id: "exciter.pin_play",
     layer: Layer::Exciter,
-    equation: "m K exp(-t/tr) sin(v t), t since M changed sign",
-    strengths: &[Parameter::new("m", "rad", 0.01, [-0.2, 0.2])],
+    equation: "M + m K exp(-t/tr) sin(v t), phi - h sgn M, t since M changed sign",
+    strengths: &[
+        Parameter::new("m", "rad", 0.01, [-0.2, 0.2]),
+        Parameter::new("h", "rad", 0.0002, [-0.002, 0.002]),
+    ],
     shapes: &[
         Parameter::new("tr", "s", 0.02, [0.005, 0.3]),
         Parameter::new("v", "rad/s", 30.0, [40.0, 600.0]),
@@ -16,29 +19,48 @@ pub(super) const EFFECT: Effect = Effect {
     nodes: |_| [60.0, 100.0, 150.0, 220.0, 320.0].map(|ringing| vec![0.05, ringing]).to_vec(),
     scope: Scope::Campaign,
     shows: forced,
-    acts: Acts::Drive(Law { plain: law, sloped: law }),
+    acts: Acts::Chain(
+        Law { plain: behind, sloped: behind },
+        Law { plain: ringing, sloped: ringing },
+    ),
     always_equivalent: &[],
     reference: "geometry of the rig",
 };
 
-fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
-    let (w, rolling) = (i.run.natural_rad_s, i.run.rolling_rad_s);
-    let inertia = i.run.inertia_kg_m2;
-    // The moment of a sine tells by its growth how long ago it changed sign.
-    let growth = (i.rate_rad_per_s * (w * w - rolling * rolling)
-        + i.acceleration_rad_per_s2 * i.run.b1_per_s)
-        * inertia;
-    let tangent = i.moment_n_m * rolling / growth;
-    let angle = tangent.value().atan();
-    if angle < 0.0 {
-        return N::from(0.0);
-    }
-    let since_s = tangent.chain(angle, (1.0 + tangent.value().powi(2)).recip()) / rolling;
-    let (ringing, _) = (p[2] * since_s).sin_cos();
+/// Time in which the play closes after a reversal [s]: a hundredth of a second at the rods that
+/// are in use.
+const CLOSING_S: f64 = 0.01;
+
+/// The roll behind the rod by half the play, on the side to which the rod pushes.
+fn behind<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    let side = i.moment_n_m.value().signum();
+    let since_s = since_reversal(i).value();
+    p[1] * (side * (2.0 * (-since_s / CLOSING_S).exp() - 1.0))
+}
+
+/// The moment of the ringing.
+fn ringing<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
+    let w = i.run.natural_rad_s;
+    let since_s = since_reversal(i);
+    let (ringing, _) = (p[3] * since_s).sin_cos();
     // The gap closes against the contact's stiffness, whatever the roll: play, stiffness and arm
     // make one moment, told as a share of the restoring of a radian.
-    let size = inertia * w * w * growth.value().signum();
-    // Gone by the time the moment turns, whatever is left of the ringing.
-    let fading = (tangent * tangent + 1.0).powf(N::from(-0.5));
-    p[0] * (-since_s / p[1]).exp() * ringing * fading * size
+    let size = i.run.inertia_kg_m2 * w * w * i.moment_n_m.value().signum();
+    p[0] * (-since_s / p[2]).exp() * ringing * size
+}
+
+/// Time since the moment changed its sign [s]: that of a sine tells by its growth how long ago.
+fn since_reversal<N: Number>(i: &Instant<'_, N>) -> N {
+    let rolling = i.run.rolling_rad_s;
+    let stiffness = i.natural_rad_s * i.natural_rad_s;
+    let restoring = i.run.inertia_kg_m2 * i.run.natural_rad_s.powi(2);
+    let growth = (i.rate_rad_per_s * (stiffness - rolling * rolling)
+        + i.acceleration_rad_per_s2 * i.b1_per_s)
+        * restoring
+        / stiffness;
+    let tangent = i.moment_n_m * rolling / growth;
+    let angle = tangent.value().atan();
+    // From the crest on the moment falls until its next change of sign.
+    let since = if angle < 0.0 { angle + std::f64::consts::PI } else { angle };
+    tangent.chain(since, (1.0 + tangent.value().powi(2)).recip()) / rolling
 }
