@@ -43,8 +43,6 @@ const SURE_BAND: f64 = 6.0;
 /// The same for the logarithm of the odds of one frequency.
 const SURE_LINE: f64 = 10.0;
 
-/// Share by which the noise in the band of the roll may differ from that above it [-].
-const COLOUR: f64 = 0.2;
 /// Slow error of an instrument's clock that nobody has stated [s]: what is allowed behind an
 /// adapter that delivers every 16 ms.
 const CLOCK_S: f64 = 1e-3;
@@ -106,10 +104,8 @@ fn channel_leftover(
     let band = powers_at(&mut (1..=band_end));
     let (n_band, n_above) = (band.len() as f64, above.len() as f64);
     let sum: f64 = band.iter().sum::<f64>() / mean_noise;
-    // A median of n powers is known to 1/sqrt(n) of itself over ln 2, and the noise of a filter or
-    // of readings sent twice is not quite white.
-    let counted = n_band * (1.0 + 2.1 * n_band / n_above);
-    let sd = (counted + (COLOUR * n_band).powi(2)).sqrt();
+    // A median of n powers is known to 1/sqrt(n) of itself over ln 2.
+    let sd = (n_band * (1.0 + 2.1 * n_band / n_above)).sqrt();
     let strongest = (0..band.len()).max_by(|a, b| band[*a].total_cmp(&band[*b])).unwrap_or(0);
     let line_log_odds = band[strongest] / mean_noise - n_band.ln();
     let middle = values.iter().sum::<f64>() / n as f64;
