@@ -1,6 +1,6 @@
 //! The model grows by one effect at a time until nothing more is to be named.
 
-use super::alike::SAME;
+use super::alike::{SAME, is_approximate};
 use super::backward::{check_backward, instead};
 use super::entry::{Best, CRUMB_OF_EVIDENCE, best};
 use super::leftover::{self, Leftover};
@@ -54,51 +54,48 @@ pub(super) struct Stem {
     pub(super) ranking: Vec<(&'static str, f64)>,
 }
 
+/// A model as far as it has grown.
+#[derive(Clone)]
+struct Growing {
+    current: Settled,
+    noise: Vec<ChannelNoise>,
+    entered: Vec<Entered>,
+}
+
+/// What steps of growth have found beside the model.
+#[derive(Default)]
+struct Beside {
+    ranking: Vec<(&'static str, f64)>,
+    implausible: Vec<(&'static str, f64)>,
+    /// Whether a law of no known cause does better than any effects.
+    is_unnamed: bool,
+}
+
 /// Grows the base model of a campaign, or a stem that is known from other records of it.
 pub(super) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
-    let (mut current, mut noise) = with_its_noise(survey, survey.first_fit(), &rough_noise(survey));
+    let (current, noise) = with_its_noise(survey, survey.first_fit(), &rough_noise(survey));
     let base_fit = current.fit.clone();
-    let mut entered: Vec<Entered> = Vec::new();
-    let (mut ranking, mut implausible) = (Vec::new(), Vec::new());
-    let mut is_unnamed = false;
-    if let Some(stem) = stem {
-        (current, noise) =
-            with_its_noise(survey, stem.fit.clone(), &white(survey.noise(&stem.fit)));
-        let before = leftovers(survey, &base_fit);
-        entered = stem.entered;
-        let found = sure_share(&before);
+    let base = Growing { current, noise, entered: Vec::new() };
+    let mut beside = Beside::default();
+    let mut start = base.clone();
+    if let Some(Stem { fit, mut entered, ranking }) = stem {
+        let (current, noise) = with_its_noise(survey, fit.clone(), &white(survey.noise(&fit)));
+        let found = sure_share(&leftovers(survey, &base_fit));
         entered.iter_mut().filter_map(|known| known.found.as_mut()).for_each(|of| *of = found);
-        ranking = stem.ranking;
+        start = Growing { current, noise, entered };
+        beside.ranking = ranking;
     }
-    while entered.len() < MOST {
-        let Some(step) = step(survey, &current, &noise, &entered) else { break };
-        if entered.is_empty() {
-            ranking.clone_from(&step.ranking);
+    let mut grown = climb(survey, start, None, &mut beside);
+    if grown.entered.len() > 1 {
+        if let Some(other) = without_the_first(survey, &base, &grown) {
+            grown = other;
         }
-        implausible.extend(step.implausible);
-        is_unnamed = step.is_unnamed;
-        match step.best {
-            Best::Enters(settled, newest) => {
-                current = settled;
-                entered.push(newest);
-            }
-            Best::IsCrumb(settled, newest) => {
-                let Some(other) = instead(survey, settled, &entered, newest, &step.noise) else {
-                    break;
-                };
-                (current, entered) = other;
-            }
-            Best::ExplainsTooLittle => {
-                is_unnamed |= entered.is_empty();
-                break;
-            }
-            Best::None => break,
-        }
-        noise = step.noise;
+        let Growing { current, noise, entered } = grown;
+        let (current, entered) = check_backward(survey, current, entered, &noise);
+        grown = Growing { current, noise, entered };
     }
-    if entered.len() > 1 {
-        (current, entered) = check_backward(survey, current, entered, &noise);
-    }
+    let Growing { current, noise, mut entered } = grown;
+    let Beside { ranking, mut implausible, is_unnamed } = beside;
     let base = settle(survey, base_fit, &noise);
     let mut last = settle(survey, current.fit, &noise);
     while let Some(wild) = (0..entered.len()).find(|e| !is_plausible(survey, &last, *e)) {
@@ -111,6 +108,68 @@ pub(super) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
     }
     let (base, last) = (base.over_scatters(survey), last.over_scatters(survey));
     Grown { base, last, noise, entered, ranking, implausible, is_unnamed }
+}
+
+/// Lets effects enter one by one, all but one that is banned, until nothing more is to be named.
+fn climb(survey: &Survey, start: Growing, banned: Option<&str>, beside: &mut Beside) -> Growing {
+    let mut now = start;
+    // Where a law of no known cause did best, and what the model was before.
+    let mut unnamed: Option<(Fit, Growing)> = None;
+    while now.entered.len() < MOST {
+        let Some(step) = step(survey, &now.current, &now.noise, &now.entered, banned) else {
+            break;
+        };
+        if now.entered.is_empty() {
+            beside.ranking.clone_from(&step.ranking);
+        }
+        beside.implausible.extend(step.implausible);
+        if let Some(fit) = step.unnamed {
+            unnamed.get_or_insert_with(|| (fit, now.clone()));
+        }
+        match step.best {
+            Best::Enters(settled, newest) => {
+                now.current = settled;
+                now.entered.push(newest);
+            }
+            Best::IsCrumb(settled, newest) => {
+                let Some(other) = instead(survey, settled, &now.entered, newest, &step.noise)
+                else {
+                    break;
+                };
+                (now.current, now.entered) = other;
+            }
+            Best::ExplainsTooLittle => {
+                beside.is_unnamed |= now.entered.is_empty();
+                break;
+            }
+            Best::None => break,
+        }
+        now.noise = step.noise;
+    }
+    // Two effects together may do better than that law, which does better than either.
+    if let Some((fit, before)) = unnamed {
+        let law = settle(survey, fit, &now.noise).log_evidence;
+        let named = settle(survey, now.current.fit.clone(), &now.noise).log_evidence;
+        if now.entered.len() < before.entered.len() + 2 || named < law + 0.5 * SAME {
+            beside.is_unnamed = true;
+            return before;
+        }
+    }
+    now
+}
+
+/// What grows without the first effect of a model, where that is one that stands for many and
+/// others, none of which is such a one, do better than all that grew on it.
+fn without_the_first(survey: &Survey, base: &Growing, grown: &Growing) -> Option<Growing> {
+    let first = grown.entered.first().filter(|first| is_approximate(first.id))?;
+    let mut beside = Beside::default();
+    let other = climb(survey, base.clone(), Some(first.id), &mut beside);
+    let is_exact = !other.entered.iter().any(|one| is_approximate(one.id));
+    if beside.is_unnamed || other.entered.is_empty() || !is_exact {
+        return None;
+    }
+    let log = |of: &Growing| settle(survey, of.current.fit.clone(), &grown.noise).log_evidence;
+    (log(&other) > log(grown) + 0.5 * SAME).then_some(other)
 }
 
 /// A model settled anew with the noise that it leaves: what starts far away settles as its noise
@@ -141,8 +200,8 @@ struct Step {
     noise: Vec<ChannelNoise>,
     ranking: Vec<(&'static str, f64)>,
     implausible: Vec<(&'static str, f64)>,
-    /// Whether a law of no known cause does better than any effect.
-    is_unnamed: bool,
+    /// The model with a law of no known cause, where that does better than with any effect.
+    unnamed: Option<Fit>,
 }
 
 /// Tries to add one effect; none when no effect is worth a look.
@@ -151,14 +210,19 @@ fn step(
     before: &Settled,
     noise: &[ChannelNoise],
     entered: &[Entered],
+    banned: Option<&str>,
 ) -> Option<Step> {
-    let scores = score(survey, &before.fit, noise);
+    let scored = |fit: &Fit, noise: &[ChannelNoise]| -> Vec<Scored> {
+        let is_free = |one: &Scored| Some(one.extension.effect.id) != banned;
+        score(survey, fit, noise).into_iter().filter(is_free).collect()
+    };
+    let scores = scored(&before.fit, noise);
     let mut ranking: Vec<(&'static str, f64)> =
         scores.iter().map(|s| (s.extension.effect.id, s.log_bayes_factor)).collect();
     ranking.retain(|(id, _)| !effects::is_unnamed(id));
     let quiet = |ranking| {
         let (noise, implausible) = (noise.to_vec(), Vec::new());
-        Some(Step { best: Best::None, noise, ranking, implausible, is_unnamed: false })
+        Some(Step { best: Best::None, noise, ranking, implausible, unnamed: None })
     };
     if scores.first().is_none_or(|s| s.log_bayes_factor < 0.5 * ENTERS) {
         return quiet(ranking);
@@ -173,7 +237,7 @@ fn step(
     }
     let noise = survey.noise(&first_best.fit);
     let current = settle(survey, before.fit.clone(), &noise);
-    let scores = score(survey, &current.fit, &noise);
+    let scores = scored(&current.fit, &noise);
     let worth = 0.1 * scores.first().map_or(0.0, |s| s.log_bayes_factor).max(0.0);
     let mut chosen: Vec<Scored> =
         scores.iter().take(FITTED).filter(|s| s.log_bayes_factor >= worth).cloned().collect();
@@ -208,11 +272,12 @@ fn step(
     for (effect, log) in &implausible {
         tracing::debug!(effect, log, "outside its physical range");
     }
-    let is_unnamed = none_of_them(&current, &plausible, entered);
+    let unnamed = none_of_them(&current, &plausible, entered);
+    let unnamed = unnamed.then(|| plausible[0].settled.fit.clone());
     let known: Vec<Tried> =
         plausible.into_iter().filter(|one| !effects::is_unnamed(one.id)).collect();
-    let best = if is_unnamed { Best::None } else { best(survey, &current, known, entered) };
-    Some(Step { best, noise, ranking, implausible, is_unnamed })
+    let best = best(survey, &current, known, entered);
+    Some(Step { best, noise, ranking, implausible, unnamed })
 }
 
 /// Whether a law of no known cause explains the runs better than every effect, best first, does,

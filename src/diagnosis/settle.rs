@@ -5,6 +5,7 @@ use super::solve::{Solution, followed, moved, prior_misfit, solve_best};
 use super::survey::{Fit, Survey};
 
 /// A model at its most probable numbers.
+#[derive(Clone)]
 pub(super) struct Settled {
     pub(super) fit: Fit,
     pub(super) solution: Solution,

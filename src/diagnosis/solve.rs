@@ -14,6 +14,7 @@ const KAPPA_SD: f64 = 30.0;
 const N_DEVIATIONS: usize = 3;
 
 /// One run with its scatter eliminated.
+#[derive(Clone)]
 pub(super) struct Marginal {
     /// What is left are base, terms, record.
     pub(super) eliminated: Eliminated,
@@ -173,6 +174,7 @@ pub(super) fn prior_misfit(survey: &Survey, fit: &Fit, scatter: &Scatter) -> f64
 }
 
 /// The campaign solved about where it stands.
+#[derive(Clone)]
 pub(super) struct Solution {
     pub(super) scatter: Scatter,
     pub(super) log_evidence: f64,
