@@ -180,3 +180,23 @@ fn a_run_refused_for_the_sign_of_its_force_is_told_among_the_causes() {
     let told: Vec<&str> = verdict.causes.iter().map(|cause| cause.effect.as_str()).collect();
     assert_eq!(told, hidden);
 }
+
+#[test]
+fn two_causes_are_not_taken_for_one_that_looks_like_both() {
+    // Vortices look like both, and the law of no cause does better than either alone.
+    let pairs = [
+        (["restoring.cubic", "damping.quadratic"], 3594),
+        (["instrument.roll_nonlinearity", "restoring.asymmetric"], 3567),
+    ];
+    for (hidden, seed) in pairs {
+        let (campaign, verdict) = diagnosed(RunSet::Speeds, &hidden, 2.0, seed);
+        let told = score(&verdict, &campaign.asked.hidden, RunSet::Speeds, |_, _| false);
+        assert!(matches!(told, Outcome::Named | Outcome::InClass), "{hidden:?}: {told:?}");
+    }
+}
+
+#[test]
+fn a_loose_pin_is_named_by_its_ringing_and_by_what_the_roll_lags() {
+    let told = outcome(RunSet::Forced, "exciter.pin_play", 1.0, 710);
+    assert_eq!(told, Outcome::Named);
+}
