@@ -18,11 +18,13 @@ pub(super) fn check_backward(
     noise: &[ChannelNoise],
 ) -> (Settled, Vec<Entered>) {
     let mut current = settle(survey, grown.fit, noise);
-    while let Some((fewer, kept)) = simpler(survey, &current, &entered, noise) {
+    while !survey.is_spent()
+        && let Some((fewer, kept)) = simpler(survey, &current, &entered, noise)
+    {
         (current, entered) = (fewer, kept);
     }
     let mut e = 0;
-    while e < entered.len() {
+    while e < entered.len() && !survey.is_spent() {
         let mut less = current.fit.clone();
         let taken = less.extensions.remove(e);
         let without = settle(survey, less, noise);

@@ -1,6 +1,7 @@
 //! What a rival is expected to leave of runs that the favourite would make.
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
 
 use super::added::Added;
 use super::alike::open_shapes;
@@ -40,6 +41,7 @@ pub(super) fn grown_survey(survey: &Survey, runs: Vec<Observation>) -> Survey {
         runs: survey.runs.clone(),
         conditions: survey.conditions.clone(),
         condition_of: survey.condition_of.clone(),
+        spent: AtomicU64::new(0),
     };
     for run in runs {
         grown.runs.push(Arc::new(run));

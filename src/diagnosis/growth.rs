@@ -86,7 +86,7 @@ pub(super) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
         beside.ranking = ranking;
     }
     let mut grown = climb(survey, start, None, &mut beside);
-    if grown.entered.len() > 1 {
+    if grown.entered.len() > 1 && !survey.is_spent() {
         if let Some(other) = without_the_first(survey, &base, &grown) {
             grown = other;
         }
@@ -115,7 +115,7 @@ fn climb(survey: &Survey, start: Growing, banned: Option<&str>, beside: &mut Bes
     let mut now = start;
     // Where a law of no known cause did best, and what the model was before.
     let mut unnamed: Option<(Fit, Growing)> = None;
-    while now.entered.len() < MOST {
+    while now.entered.len() < MOST && !survey.is_spent() {
         let Some(step) = step(survey, &now.current, &now.noise, &now.entered, banned) else {
             break;
         };

@@ -1,11 +1,12 @@
 //! The runs of a campaign together, and the model that is fitted to all of them.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::cores;
 use super::observation::Observation;
 use super::run_fit::{ChannelNoise, RunState, Summary, misfit, predict, residual, summarise};
-use crate::model::{Base, Effect, Term};
+use crate::model::{Acts, Base, Effect, N_BASE, Term};
 
 /// The runs with the condition that each belongs to.
 pub(super) struct Survey {
@@ -14,7 +15,16 @@ pub(super) struct Survey {
     pub(super) conditions: Vec<String>,
     /// Place of each run's condition.
     pub(super) condition_of: Vec<usize>,
+    /// What fits have cost so far, in simulated values and changes of values.
+    pub(super) spent: AtomicU64,
 }
+
+/// What a search for causes may cost: some ten seconds of two cores of 2020, counted rather than
+/// timed, so that the same runs give the same answer anywhere.
+const MOST_SPENT: u64 = 2_000_000_000;
+/// Cost of an echo or of states that remember, against that of a value without.
+const COST_OF_ECHO: u64 = 8;
+const COST_OF_LAG: u64 = 2;
 
 /// Numbers of the law that the runs of a condition scatter about.
 pub(super) const N_LAW: usize = 4;
@@ -109,7 +119,8 @@ impl Survey {
                 })
             })
             .collect();
-        Self { runs: runs.into_iter().map(Arc::new).collect(), conditions, condition_of }
+        let runs = runs.into_iter().map(Arc::new).collect();
+        Self { runs, conditions, condition_of, spent: AtomicU64::new(0) }
     }
 
     /// The fit that the identifications of the runs suggest.
@@ -199,6 +210,30 @@ impl Survey {
         (0..self.runs.len()).filter(|r| self.condition_of[*r] == condition).collect()
     }
 
+    /// Whether the search for causes has cost what it may.
+    pub(super) fn is_spent(&self) -> bool {
+        self.spent() > MOST_SPENT
+    }
+
+    /// What fits have cost so far.
+    pub(super) fn spent(&self) -> u64 {
+        self.spent.load(Ordering::Relaxed)
+    }
+
+    /// Counts a simulation of a run with so many changes.
+    fn spend(&self, run: usize, terms: &[Term], n_changes: usize) {
+        let cost = |term: &Term| match term.effect.acts {
+            Acts::Echo(_) => COST_OF_ECHO,
+            Acts::Lagging(_) => COST_OF_LAG,
+            _ => 1,
+        };
+        let observation = &self.runs[run];
+        let n_values = observation.roll_time_s.len() + observation.moment_time_s.len();
+        let each: u64 = 1 + terms.iter().map(cost).sum::<u64>();
+        let of_run = n_values as u64 * (1 + n_changes as u64) * each;
+        self.spent.fetch_add(of_run, Ordering::Relaxed);
+    }
+
     /// Every run linearised about its state, with the candidates of each.
     pub(super) fn summaries(
         &self,
@@ -207,7 +242,12 @@ impl Survey {
         candidates: &(dyn Fn(usize) -> Vec<Term> + Sync),
     ) -> Vec<Summary> {
         self.each_run(&|r| {
-            summarise(&self.runs[r], &fit.states[r], &fit.terms(r), &candidates(r), &noise[r])
+            let (terms, candidates) = (fit.terms(r), candidates(r));
+            let n_changes =
+                |terms: &[Term]| terms.iter().map(|term| term.values.len()).sum::<usize>();
+            let n_own = fit.states[r].own.len() + N_BASE + n_changes(&terms);
+            self.spend(r, &terms, n_own + n_changes(&candidates));
+            summarise(&self.runs[r], &fit.states[r], &terms, &candidates, &noise[r])
         })
     }
 
@@ -218,9 +258,12 @@ impl Survey {
 
     /// Sum of the squares that the model leaves, in units of the noise.
     pub(super) fn misfit(&self, fit: &Fit, noise: &[ChannelNoise]) -> f64 {
-        self.each_run(&|r| misfit(&self.runs[r], &fit.states[r], &fit.terms(r), &noise[r]))
-            .into_iter()
-            .sum()
+        let of_run = |r: usize| {
+            let terms = fit.terms(r);
+            self.spend(r, &terms, 0);
+            misfit(&self.runs[r], &fit.states[r], &terms, &noise[r])
+        };
+        self.each_run(&of_run).into_iter().sum()
     }
 
     /// Does the same for every run, on every core; the answers are in the order of the runs.

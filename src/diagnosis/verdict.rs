@@ -125,6 +125,10 @@ pub(super) fn told(
     reversed: &[Reversed],
     tank: &Tank,
 ) -> Diagnosis {
+    tracing::debug!(spent = survey.spent(), "told");
+    if survey.is_spent() {
+        tracing::warn!("the search for causes was cut short; hint: diagnose fewer runs together");
+    }
     let shown = Shown::of(survey);
     let is_untold = |left: &Leftover| !shown.tells(survey, &left.run, left.frequency_rad_s);
     let left_before = leftovers(survey, &grown.base.fit);
