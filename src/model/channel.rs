@@ -95,6 +95,9 @@ pub(super) fn add_tangents(
             });
             Sloped { value, slopes }
         };
+        let input = |value: f64, column: usize| -> Sloped {
+            if here.contains(&column) { Sloped::input(value, column - from) } else { value.into() }
+        };
         let sloped: Vec<Instant<'_, Sloped>> = instants
             .iter()
             .enumerate()
@@ -104,8 +107,8 @@ pub(super) fn add_tangents(
                 rate_rad_per_s: along(i.rate_rad_per_s, sample, 1),
                 acceleration_rad_per_s2: along(i.acceleration_rad_per_s2, sample, 2),
                 moment_n_m: along(i.moment_n_m, sample, 3),
-                natural_rad_s: i.natural_rad_s.into(),
-                b1_per_s: i.b1_per_s.into(),
+                natural_rad_s: input(i.natural_rad_s, n_own),
+                b1_per_s: input(i.b1_per_s, n_own + 1),
                 run: i.run,
             })
             .collect();
@@ -113,10 +116,7 @@ pub(super) fn add_tangents(
         for term in terms {
             let values: Vec<Sloped> = (parameter..)
                 .zip(&term.values)
-                .map(|(column, value)| {
-                    let is_here = here.contains(&column);
-                    if is_here { Sloped::input(*value, column - from) } else { (*value).into() }
-                })
+                .map(|(column, value)| input(*value, column))
                 .collect();
             parameter += term.values.len();
             let added: Vec<Sloped> = match (law_of(term, channel), term.effect.acts) {

@@ -34,8 +34,8 @@ const CLOSING_S: f64 = 0.01;
 /// The roll behind the rod by half the play, on the side to which the rod pushes.
 fn behind<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     let side = i.moment_n_m.value().signum();
-    let since_s = since_reversal(i).value();
-    p[1] * (side * (2.0 * (-since_s / CLOSING_S).exp() - 1.0))
+    let open = (-since_reversal(i) / CLOSING_S).exp();
+    p[1] * (open * 2.0 - N::from(1.0)) * side
 }
 
 /// The moment of the ringing.
