@@ -188,8 +188,8 @@ impl Observation {
     }
 
     /// Lets go of readings at the end of the channel's range, which are none of the roll, unless
-    /// another run read beyond: then it was no end. Whether enough is left: a channel that reads its
-    /// end most of the time leaves no run to speak of.
+    /// another run read beyond: then it was no end. Whether enough is left: a channel that reads
+    /// its end most of the time leaves no run to speak of.
     pub(super) fn read_within(&mut self, largest_rad: f64) -> bool {
         let Some(clip) = self.facts.clip else { return true };
         tracing::debug!(run = self.id, level = clip.level_rad, largest_rad, "clipped");

@@ -132,8 +132,8 @@ impl Survey {
         Fit { laws, log_scale: 0.0, extensions: Vec::new(), states }
     }
 
-    /// A fit to other records of the same runs, from which a fit to these can start; none where they
-    /// are not the same.
+    /// A fit to other records of the same runs, from which a fit to these can start; none where
+    /// they are not the same.
     pub(super) fn adopted(&self, other: &Self, fit: &Fit) -> Option<Fit> {
         let place = |run: &Arc<Observation>| other.runs.iter().position(|o| o.id == run.id);
         let places: Vec<usize> = self.runs.iter().map(place).collect::<Option<_>>()?;

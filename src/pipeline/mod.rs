@@ -62,8 +62,8 @@ pub struct Options {
     pub seed: u64,
     /// Recorded seconds played in one second [-]; none plays as fast as it goes.
     pub speed: Option<f64>,
-    /// Whether the histories of every run are kept after the listener has seen them; a day has more of
-    /// them than memory.
+    /// Whether the histories of every run are kept after the listener has seen them; a day has more
+    /// of them than memory.
     pub keep_histories: bool,
 }
 
