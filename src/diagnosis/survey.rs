@@ -19,8 +19,8 @@ pub(super) struct Survey {
     pub(super) spent: AtomicU64,
 }
 
-/// What a search for causes may cost: some ten seconds of two cores of 2020, counted rather than
-/// timed, so that the same runs give the same answer anywhere.
+/// What a search for causes may cost: some ten seconds of the two cores of `docs/bench.md`,
+/// counted rather than timed, so that the same runs give the same answer anywhere.
 const MOST_SPENT: u64 = 2_000_000_000;
 /// Cost of an echo or of states that remember, against that of a value without.
 const COST_OF_ECHO: u64 = 8;

@@ -27,8 +27,8 @@ pub(super) const EFFECT: Effect = Effect {
     reference: "geometry of the rig",
 };
 
-/// Time in which the play closes after a reversal [s]: a hundredth of a second at the rods that
-/// are in use.
+/// Time in which the play closes after a reversal [s]; taken as known, for a roll that is read
+/// every hundredth of a second hardly shows it.
 const CLOSING_S: f64 = 0.01;
 
 /// The roll behind the rod by half the play, on the side to which the rod pushes.
