@@ -9,8 +9,8 @@ use super::track::Track;
 
 /// The speed is steady when it stays within a range for this long [s].
 const STEADY_S: f64 = 1.0;
-/// How long after an instant [s] it is known whether the speed was steady then.
-pub(super) const KNOWN_AFTER_S: f64 = STEADY_S + 0.4;
+/// How long after an instant [s] it is known whether the speed became steady then.
+const KNOWN_AFTER_S: f64 = STEADY_S + 0.4;
 /// Range of a steady speed within [`STEADY_S`], as a share of the speed.
 const RANGE_SHARE: f64 = 0.04;
 /// Deviation from the steady speed that ends it, as a share of the speed.
@@ -53,6 +53,8 @@ pub(super) struct CarriagePass {
     quantum: Quantum,
     recent: VecDeque<Bin>,
     level_m_s: f64,
+    /// When the speed was last close to its steady level [s]: where a steady stretch ends.
+    kept_s: f64,
     n_outside: usize,
     steady: VecDeque<Steady>,
 }
@@ -78,6 +80,14 @@ impl CarriagePass {
                 self.become_steady(bin);
             }
         }
+    }
+
+    /// Whether no later sample changes how the carriage moved until `time_s`: a steady stretch that
+    /// goes on ends at the earliest where the speed was last close to its level.
+    pub(super) fn is_known(&self, time_s: f64) -> bool {
+        let Some(last_s) = self.track.last_s() else { return true };
+        let is_steady = self.steady.back().is_some_and(|s| s.end_s.is_none());
+        last_s >= time_s + KNOWN_AFTER_S || is_steady && self.kept_s >= time_s
     }
 
     /// How the carriage moved from `start_s` to `end_s`.
@@ -139,7 +149,7 @@ impl CarriagePass {
                 from_s
             };
             self.steady.push_back(Steady { start_s, end_s: None, level_m_s: mean_m_s });
-            (self.level_m_s, self.n_outside) = (mean_m_s, 0);
+            (self.level_m_s, self.kept_s, self.n_outside) = (mean_m_s, from_s, 0);
         }
     }
 
@@ -152,9 +162,13 @@ impl CarriagePass {
 
     fn stay_steady(&mut self, bin: Bin) {
         let level_m_s = self.level_m_s;
-        let deviation = |b: &Bin| (b.value - level_m_s).abs();
+        let deviation_m_s = (bin.value - level_m_s).abs();
         let left = (LEFT_SHARE * level_m_s.abs()).max(2.0 * FLOOR_M_S) + 5.0 * self.ripple_m_s();
-        if deviation(&bin) <= left {
+        let kept = KEPT_SHARE * level_m_s.abs() + 0.5 * FLOOR_M_S + 2.5 * self.ripple_m_s();
+        if deviation_m_s <= kept {
+            self.kept_s = bin.time_s;
+        }
+        if deviation_m_s <= left {
             self.level_m_s += LEVEL_SHARE * (bin.value - level_m_s);
             self.n_outside = 0;
             return;
@@ -163,11 +177,8 @@ impl CarriagePass {
         if self.n_outside < 3 {
             return;
         }
-        let kept = KEPT_SHARE * level_m_s.abs() + 0.5 * FLOOR_M_S + 2.5 * self.ripple_m_s();
-        let last = self.recent.iter().rev().find(|b| deviation(b) <= kept);
-        let end_s = last.or(self.recent.front()).map_or(bin.time_s, |b| b.time_s);
         if let Some(steady) = self.steady.back_mut() {
-            steady.end_s = Some(end_s.max(steady.start_s));
+            steady.end_s = Some(self.kept_s.max(steady.start_s));
         }
     }
 }

@@ -9,10 +9,9 @@ use super::Limits;
 use super::Run;
 use super::RunEnd;
 use super::aftermath::Following;
-use super::carriage_pass::KNOWN_AFTER_S;
 use super::closer::Closer;
 use super::half_cycles::HalfCycles;
-use super::half_cycles::QUIET_S;
+use super::half_cycles::QUIET_MIN_S;
 use super::half_cycles::Swing;
 use super::motion::Motion;
 use super::passed_over::PassedOver;
@@ -129,7 +128,7 @@ impl RunFinder {
         match swing {
             Some(Swing::Quiet(at_s)) => {
                 self.half_period_s = None;
-                self.quiet_since_s = Some(at_s - QUIET_S);
+                self.quiet_since_s = Some(at_s - QUIET_MIN_S);
             }
             Some(Swing::Half(half)) => self.half_period_s = Some(half.duration_s()),
             None => {}
@@ -170,10 +169,9 @@ impl RunFinder {
                 Swing::Quiet(at_s) => *at_s,
             };
             let waited_s = self.records.roll.last_s().unwrap_or(at_s) - at_s;
-            let behind = |last_s: Option<f64>, needed_s: f64| last_s.is_some_and(|s| s < needed_s);
+            let drive_is_behind = self.records.drive.track.last_s().is_some_and(|s| s < at_s);
             let known = waited_s >= WAIT_MAX_S
-                || !behind(self.records.carriage.track.last_s(), at_s + KNOWN_AFTER_S)
-                    && !behind(self.records.drive.track.last_s(), at_s);
+                || self.records.carriage.is_known(at_s) && !drive_is_behind;
             if !known {
                 return;
             }
@@ -323,7 +321,7 @@ mod tests {
             !events.is_empty()
         });
         assert!(matches!(&events[0], Event::Run(run) if run.end == RunEnd::Caught), "{events:?}");
-        // The model is still from 13 s on, which takes two seconds to tell.
-        assert!(told_s.is_some_and(|s| s < 15.5), "{told_s:?}");
+        // The model is still from 13 s on, which takes 1.2 half periods to tell.
+        assert!(told_s.is_some_and(|s| s < 14.5), "{told_s:?}");
     }
 }

@@ -5,9 +5,14 @@ use std::collections::VecDeque;
 use super::bins::Bin;
 use super::ripple::Ripple;
 
-/// A model is still when its roll stays within the noise for this long [s], or longer when the
-/// last half cycle was long.
-pub(super) const QUIET_S: f64 = 2.0;
+/// A model of which no half cycle is known is still when its roll stays within the noise for this
+/// long [s].
+const QUIET_S: f64 = 2.0;
+/// One that rolled is still when its roll stays within the noise for so many half periods, in which
+/// it would have shown a whole swing ...
+const QUIET_HALF_PERIODS: f64 = 1.2;
+/// ... and for this long at least [s].
+pub(super) const QUIET_MIN_S: f64 = 1.0;
 /// A half cycle longer than this [s] is no roll, so a creeping mean cannot fill the memory.
 const LEG_MAX_S: f64 = 15.0;
 /// The roll must come back by this share of its swing, so that a vibration on top of a large roll
@@ -130,7 +135,9 @@ impl HalfCycles {
 
     /// Whether a moving model has come to rest, or a drift has been taken for motion.
     fn becomes_quiet(&mut self, smooth: Bin, ripple: Ripple) -> bool {
-        let needed_s = self.last.map_or(0.0, |h| 1.2 * h.duration_s()).clamp(QUIET_S, LEG_MAX_S);
+        let needed_s = self.last.map_or(QUIET_S, |half| {
+            (QUIET_HALF_PERIODS * half.duration_s()).clamp(QUIET_MIN_S, LEG_MAX_S)
+        });
         self.recent.push_back(smooth);
         while self.recent.get(1).is_some_and(|b| b.time_s <= smooth.time_s - needed_s) {
             self.recent.pop_front();
@@ -286,6 +293,7 @@ mod tests {
                 _ => None,
             }
         });
-        assert!((6.0..6.3).contains(&quiet.unwrap()), "{quiet:?}");
+        // Half a period of 1.05 s, and a fifth of it more.
+        assert!((5.2..5.6).contains(&quiet.unwrap()), "{quiet:?}");
     }
 }
