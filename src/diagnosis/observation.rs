@@ -153,6 +153,7 @@ impl Observation {
             has_moment: !moment.time_s.is_empty(),
             n_runs: 1,
             initial_roll_rad: start[0],
+            rolled_for_s: rolled_for_s(&run.run, record.origin_s, rolling_rad_s),
         };
         let moment_noise =
             if moment.value.is_empty() { 1.0 } else { facts::rough_noise(&moment.value) };
@@ -226,6 +227,17 @@ impl Observation {
         }
         self
     }
+}
+
+/// Longest time from rest to a settled roll [periods] in which nothing but the rod's start went on.
+const START_PERIODS: f64 = 5.0;
+
+/// For how long a rod had rolled the model at `origin_s` [s]: it reached half of its amplitude
+/// midway between the model's rest and the settled roll.
+fn rolled_for_s(run: &Run, origin_s: f64, rolling_rad_s: f64) -> f64 {
+    let most_s = START_PERIODS * std::f64::consts::TAU / rolling_rad_s;
+    let rest = run.still.filter(|still| run.start_s - still.end_s < most_s);
+    rest.map_or(f64::INFINITY, |still| origin_s - 0.5 * (still.end_s + run.start_s))
 }
 
 /// The moment channel as it reads, without any zero taken out, thinned by averaging.

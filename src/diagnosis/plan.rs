@@ -24,6 +24,8 @@ pub(super) struct Plan {
 const STEADY_SHARE: f64 = 0.7;
 const LONGEST_S: f64 = 25.0;
 const SHORTEST_S: f64 = 8.0;
+/// Periods after which a planned rod has settled.
+const PLANNED_START_PERIODS: f64 = 2.0;
 const SAMPLE_S: f64 = 0.02;
 /// Froude numbers at which the rod may be asked for [-].
 const FORCED_FROUDES: [f64; 3] = [0.0, 0.2, 0.4];
@@ -114,6 +116,7 @@ impl Plan {
         (at.rolling_rad_s, at.span_s) = (rolling_rad_s, span_s);
         at.amplitude_rad = amplitude_rad.abs();
         at.initial_roll_rad = amplitude_rad;
+        at.rolled_for_s = PLANNED_START_PERIODS * std::f64::consts::TAU / rolling_rad_s;
         at.b1_per_s = b1.max(1e-3);
         at.has_moment = self.kind == RunKind::Forced;
         at.order = survey.runs.len();

@@ -8,12 +8,14 @@ use super::number::{Number, Sloped, slope};
 /// Share that the motion some time ago has in a moment now.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tap<N = f64> {
-    /// How long ago [s]; longer than a step of any motion.
-    pub delay_s: N,
+    /// How long ago [s], whatever the parameters; longer than a step of any motion.
+    pub delay_s: f64,
     /// Moment per unit inertia and roll [1/s2].
     pub of_roll: N,
     /// Moment per unit inertia and roll rate [1/s].
     pub of_rate: N,
+    /// Moment per unit inertia and roll acceleration [-].
+    pub of_acceleration: N,
 }
 
 /// The shares that an echo is made of under its parameters, the same all along a run.
@@ -36,7 +38,8 @@ impl Echo {
     /// The echo under some parameters.
     pub(super) fn new(taps: &Taps, run: &Circumstances, values: &[f64]) -> Self {
         let taps = (taps.plain)(run, values);
-        Self(taps.iter().map(|tap| (tap.delay_s, [tap.of_roll, tap.of_rate, 0.0])).collect())
+        let of = |tap: &Tap| (tap.delay_s, [tap.of_roll, tap.of_rate, tap.of_acceleration]);
+        Self(taps.iter().map(of).collect())
     }
 
     /// What each parameter does to it.
@@ -47,11 +50,8 @@ impl Echo {
         let taps = (taps.sloped)(run, &inputs);
         let along = |k: usize| {
             let of = |tap: &Tap<Sloped>| {
-                let Tap { delay_s, of_roll, of_rate } = tap;
-                let later = delay_s.slopes[place(k)];
-                let roll = of_roll.slopes[place(k)];
-                let rate = of_rate.slopes[place(k)] - later * of_roll.value;
-                (delay_s.value, [roll, rate, -later * of_rate.value])
+                let weights = [tap.of_roll, tap.of_rate, tap.of_acceleration];
+                (tap.delay_s, weights.map(|weight| weight.slopes[place(k)]))
             };
             Self(taps.iter().map(of).collect())
         };
@@ -73,16 +73,13 @@ impl Echo {
         StepEcho { at_step: at(0.0), between: at(0.5) }
     }
 
-    /// Ready for a course that a rod has imposed ever since.
-    pub(super) fn of_course(&self, course: &Course) -> CourseEcho {
+    /// Ready for a course that a rod has imposed for some time [s] at time zero.
+    pub(super) fn of_course(&self, course: &Course, imposed_for_s: f64) -> CourseEcho {
         let w = course.frequency_rad_s();
-        let mut echo = CourseEcho {
-            frequency_rad_s: w,
-            of_mean: self.0.iter().map(|(_, [of_roll, ..])| of_roll).sum(),
-            transfer: [[0.0; 2]; N_HARMONICS],
-            of_frequency: [[0.0; 2]; N_HARMONICS],
-        };
+        let mut heard = vec![Heard::default()];
         for (delay_s, [of_roll, of_rate, of_acceleration]) in &self.0 {
+            let mut sum = heard[heard.len() - 1];
+            sum.of_mean += of_roll;
             for h in 0..N_HARMONICS {
                 let n = (h + 1) as f64;
                 let (sin, cos) = (n * w * delay_s).sin_cos();
@@ -93,12 +90,14 @@ impl Echo {
                 // The derivative of exp(-i n w s) is -i n s of it.
                 let of_delay = [n * delay_s * share[1], -n * delay_s * share[0]];
                 for i in 0..2 {
-                    echo.transfer[h][i] += share[i];
-                    echo.of_frequency[h][i] += of_weight[i] + of_delay[i];
+                    sum.transfer[h][i] += share[i];
+                    sum.of_frequency[h][i] += of_weight[i] + of_delay[i];
                 }
             }
+            heard.push(sum);
         }
-        echo
+        let delays_s = self.0.iter().map(|(delay_s, _)| *delay_s).collect();
+        CourseEcho { frequency_rad_s: w, imposed_for_s, delays_s, heard }
     }
 }
 
@@ -110,11 +109,15 @@ pub(super) struct StepEcho {
 }
 
 impl StepEcho {
-    /// The echo at a step, or half a step after it; nil before the motion began.
+    /// The echo at a step, or half a step after it; before the motion began the model was held.
     pub(super) fn at(&self, history: &History, step: usize, is_half_after: bool) -> f64 {
         let taps = if is_half_after { &self.between } else { &self.at_step };
-        let heard = taps.iter().filter(|(before, _)| *before <= step);
-        heard.map(|(before, weights)| history.weighed(step - before, weights)).sum()
+        let held_rad = history.first_roll();
+        let heard = taps.iter().map(|(before, weights)| match step.checked_sub(*before) {
+            Some(place) => history.weighed(place, weights),
+            None => (weights[0] + weights[3]) * held_rad,
+        });
+        heard.sum()
     }
 }
 
@@ -122,6 +125,16 @@ impl StepEcho {
 #[derive(Debug, Clone)]
 pub(super) struct CourseEcho {
     frequency_rad_s: f64,
+    imposed_for_s: f64,
+    /// After how long [s] each tap is heard, the first one first.
+    delays_s: Vec<f64>,
+    /// What is heard when none, one, two and so on of them are.
+    heard: Vec<Heard>,
+}
+
+/// Taps together.
+#[derive(Debug, Clone, Copy, Default)]
+struct Heard {
     of_mean: f64,
     /// `T_h`, real and imaginary.
     transfer: [[f64; 2]; N_HARMONICS],
@@ -138,16 +151,18 @@ impl CourseEcho {
 
     /// What each number of the course does to it at a time [s].
     pub(super) fn changes(&self, course: &Course, time_s: f64) -> [f64; N_COURSE] {
+        let n_heard = self.delays_s.partition_point(|s| *s <= time_s + self.imposed_for_s);
+        let Heard { of_mean, transfer, of_frequency } = &self.heard[n_heard];
         let (sin, cos) = (self.frequency_rad_s * time_s).sin_cos();
         let mut turned = [cos, sin];
         let mut changes = [0.0; N_COURSE];
-        changes[0] = self.of_mean;
+        changes[0] = *of_mean;
         for h in 0..N_HARMONICS {
             let (a, b) = (course.numbers[1 + 2 * h], course.numbers[2 + 2 * h]);
-            let [re, im] = times(self.transfer[h], turned);
+            let [re, im] = times(transfer[h], turned);
             changes[1 + 2 * h] = re;
             changes[2 + 2 * h] = im;
-            let [of_re, of_im] = times(self.of_frequency[h], turned);
+            let [of_re, of_im] = times(of_frequency[h], turned);
             let along = (h + 1) as f64 * time_s;
             changes[N_COURSE - 1] += (of_re - along * im) * a + (of_im + along * re) * b;
             turned = times(turned, [cos, sin]);

@@ -108,6 +108,9 @@ pub struct Circumstances {
     pub n_runs: usize,
     /// Roll at the start [rad].
     pub initial_roll_rad: f64,
+    /// For how long a rod had rolled the model when its record begins [s]: what comes back later
+    /// than that is not back yet. Infinite where it is not known.
+    pub rolled_for_s: f64,
 }
 
 /// What a roll record shows without any model.

@@ -33,6 +33,11 @@ impl History {
         self.states.push(motion);
     }
 
+    /// Roll with which it begins.
+    pub(super) fn first_roll(&self) -> f64 {
+        self.states.first().map_or(0.0, |[roll, ..]| *roll)
+    }
+
     /// Roll, rate and acceleration at a time [s] by the quintic between two steps.
     pub(super) fn motion(&self, time_s: f64) -> [f64; 3] {
         let place = (time_s / self.step_s).clamp(0.0, (self.states.len() - 1) as f64);

@@ -117,9 +117,10 @@ impl<'a> Imposed<'a> {
     pub(super) fn remembered(&self) -> Remembered {
         let points = self.points();
         let echo = |term: &Term| match term.effect.acts {
-            Acts::Echo(taps) => {
-                Some(Echo::new(&taps, self.run, &term.values).of_course(self.course))
-            }
+            Acts::Echo(taps) => Some(
+                Echo::new(&taps, self.run, &term.values)
+                    .of_course(self.course, self.run.rolled_for_s),
+            ),
             _ => None,
         };
         let echoes = self.terms.iter().filter_map(echo).collect();

@@ -111,7 +111,10 @@ impl<'a> Changes<'a> {
             n_columns,
         };
         let along = |echoes: Vec<Echo>| -> Vec<CourseEcho> {
-            echoes.iter().map(|echo| echo.of_course(imposed.course)).collect()
+            echoes
+                .iter()
+                .map(|echo| echo.of_course(imposed.course, imposed.run.rolled_for_s))
+                .collect()
         };
         all.heard = imposed
             .terms

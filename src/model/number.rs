@@ -4,7 +4,7 @@ use std::array;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Slopes that a [`Sloped`] number carries.
-pub const N_SLOPES: usize = 10;
+pub const N_SLOPES: usize = 12;
 
 /// What the slopes of an equation's inputs count from; the parameters come last.
 pub mod slope {

@@ -83,6 +83,7 @@ pub(super) mod tests {
             has_moment: true,
             n_runs: 6,
             initial_roll_rad: 0.2,
+            rolled_for_s: 3.0,
         }
     }
 

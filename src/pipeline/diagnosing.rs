@@ -262,10 +262,11 @@ impl Observed {
             let shelf = shelf.map(|shelf| shelf.unwrap_or_else(PoisonError::into_inner));
             let take = |shelved: &Shelved| Self::taken_up(shelf.as_deref(), shelved);
             let has_more = self.observations.iter().any(|seen| seen.whole.is_some());
-            let whole = self.observations.iter().filter(|seen| has_more && !seen.is_within);
+            let begun = || self.observations.iter().filter(|seen| !seen.is_within);
+            let whole = begun().filter(|_| has_more);
             let whole = whole.filter_map(|seen| take(seen.whole.as_ref().unwrap_or(&seen.alone)));
             let whole = whole.collect();
-            let runs = self.observations.iter().filter_map(|seen| take(&seen.alone)).collect();
+            let runs = begun().filter_map(|seen| take(&seen.alone)).collect();
             drop(shelf);
             let gathered = Gathered { runs, whole, reversed: self.reversed };
             diagnosis::diagnose(gathered, &campaign.tank)

@@ -1,10 +1,11 @@
-//! Follows what the model does after its release until it lies still or somebody touches it.
+//! Follows what the model does after its release until somebody touches it or a minute is over.
 
 use super::Aftermath;
 use super::Run;
 use super::decay;
 use super::decay::START_RAD;
 use super::forced::Cycle;
+use super::half_cycles::HalfCycle;
 use super::records::Records;
 use super::ripple::Ripple;
 
@@ -30,6 +31,8 @@ pub(super) struct Following {
     run_end_s: Option<f64>,
     /// End of the last half cycle that was the model's own [s].
     end_s: f64,
+    /// Where the model comes to rest [rad].
+    zero_rad: f64,
     released_rad: f64,
     half_period_s: f64,
     n_shown: usize,
@@ -39,10 +42,12 @@ impl Following {
     /// Behind the decay of these half cycles that ended at `run_end_s`.
     pub(super) fn behind(used: &[Cycle], run_end_s: f64) -> Option<Self> {
         let halves: Vec<_> = used.iter().map(|cycle| cycle.half).collect();
+        let zero_rad = halves.iter().map(middle_rad).sum::<f64>() / halves.len() as f64;
         Some(Self {
             from_s: run_end_s.next_up(),
             run_end_s: Some(run_end_s),
             end_s: run_end_s,
+            zero_rad,
             released_rad: halves.first()?.amplitude_rad(),
             half_period_s: decay::half_period_s(&halves),
             n_shown: 0,
@@ -58,6 +63,7 @@ impl Following {
             from_s: decay::start_s(half, &records.roll, ripple),
             run_end_s: None,
             end_s: half.end.time_s,
+            zero_rad: middle_rad(half),
             released_rad: half.amplitude_rad(),
             half_period_s: half.duration_from_hold_s(),
             n_shown: 0,
@@ -84,13 +90,23 @@ impl Following {
         let off = (half.duration_s() / self.half_period_s - 1.0).abs();
         let is_odd = half.is_from_hold() || off > PERIOD_CHANGE;
         let most_rad = if is_odd { TOUCHED } else { STRUCK } * self.released_rad;
-        let is_late = half.end.time_s > self.from_s + FOLLOWED_S;
-        if cycle.is_driven() || !cycle.steady || amplitude_rad > most_rad || is_late {
+        let is_over = self.is_over(half.end.time_s);
+        if cycle.is_driven() || !cycle.steady || amplitude_rad > most_rad || is_over {
             return false;
         }
         self.n_shown += usize::from(amplitude_rad > SHOWN * ripple.lost_below_rad);
         self.end_s = half.end.time_s;
         true
+    }
+
+    /// Whether a model that is still at `roll_rad` is left alone: nobody holds it at heel.
+    pub(super) fn rests_at(&self, roll_rad: f64) -> bool {
+        (roll_rad - self.zero_rad).abs() < TOUCHED * self.released_rad
+    }
+
+    /// Whether it is over at `time_s`, whatever comes.
+    pub(super) fn is_over(&self, time_s: f64) -> bool {
+        time_s > self.from_s + FOLLOWED_S
     }
 
     /// What was followed, if it stands out of the noise.
@@ -100,4 +116,8 @@ impl Following {
         let is_shown = self.n_shown >= N_SHOWN && !roll.time_s.is_empty();
         is_shown.then_some(Aftermath { run_end_s: self.run_end_s, roll, drive })
     }
+}
+
+fn middle_rad(half: &HalfCycle) -> f64 {
+    0.5 * (half.start.roll_rad + half.end.roll_rad)
 }

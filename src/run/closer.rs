@@ -7,6 +7,7 @@ use super::RunKind;
 use super::aftermath::Following;
 use super::assembly::Stretch;
 use super::forced::Cycle;
+use super::half_cycles::QUIET_MIN_S;
 use super::records::Records;
 
 /// The channels, the limits, and whoever is told.
@@ -43,6 +44,16 @@ impl Closer<'_> {
         }
         if self.following.is_none() {
             *self.following = Following::released(cycle, self.records);
+        }
+    }
+
+    /// The model has been still up to `at_s`: waves may come back from the walls yet, and a hand
+    /// that holds it at heel ends what is followed.
+    pub(super) fn rest(&mut self, at_s: f64) {
+        let roll_rad = self.records.roll.mean(at_s - QUIET_MIN_S, at_s);
+        let rests = |following: Following| roll_rad.is_some_and(|roll| following.rests_at(roll));
+        if self.following.is_some_and(|following| !rests(following)) {
+            self.leave();
         }
     }
 

@@ -170,8 +170,8 @@ impl RunFinder {
             };
             let waited_s = self.records.roll.last_s().unwrap_or(at_s) - at_s;
             let drive_is_behind = self.records.drive.track.last_s().is_some_and(|s| s < at_s);
-            let known = waited_s >= WAIT_MAX_S
-                || self.records.carriage.is_known(at_s) && !drive_is_behind;
+            let known =
+                waited_s >= WAIT_MAX_S || self.records.carriage.is_known(at_s) && !drive_is_behind;
             if !known {
                 return;
             }
@@ -210,6 +210,10 @@ impl RunFinder {
         if self.records.n_samples() > N_SAMPLES_MAX {
             self.drain(events);
             self.end(RunEnd::TooLong, now_s, events);
+        }
+        if self.following.is_some_and(|following| following.is_over(now_s)) {
+            let Self { records, limits, following, .. } = self;
+            Closer { records, limits, events, following }.leave();
         }
         let waiting_s = self.waiting.iter().find_map(|swing| match swing {
             Swing::Half(half) => Some(half.start.time_s),

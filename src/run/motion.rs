@@ -91,8 +91,13 @@ impl Motion {
         }
     }
 
-    /// The model is still, the record has a hole, or it ended: whatever was under way ends.
+    /// The record has a hole, or it ended: whatever was under way ends.
     pub(super) fn end(&mut self, end: RunEnd, end_s: f64, closer: &mut Closer) {
+        self.end_runs(end, end_s, closer);
+        closer.leave();
+    }
+
+    fn end_runs(&mut self, end: RunEnd, end_s: f64, closer: &mut Closer) {
         if self.state != State::Searching {
             // The pass may have ended after the last whole half cycle.
             let last_s = self.cycles.last().map_or(end_s, |c| c.half.end.time_s);
@@ -103,7 +108,6 @@ impl Motion {
         }
         self.close_driven(end, f64::INFINITY, None, closer);
         self.flush(f64::INFINITY, closer);
-        closer.leave();
         *self = Self::default();
         if end == RunEnd::Gap {
             self.trust = Trust::behind_hole();
@@ -123,7 +127,8 @@ impl Motion {
             _ if due_rad > seen_rad => RunEnd::Caught,
             _ => RunEnd::LostInNoise,
         };
-        self.end(end, at_s, closer);
+        self.end_runs(end, at_s, closer);
+        closer.rest(at_s);
     }
 
     fn halves(&self) -> Vec<HalfCycle> {

@@ -1,7 +1,7 @@
 //! Waves that the model made come back from the tank walls, the long ones first.
 
-use crate::model::echo::{Tap, Taps, times};
-use crate::model::effect::{Acts, Circumstances, Effect, Layer, Parameter, Scope, each};
+use crate::model::echo::{Tap, Taps};
+use crate::model::effect::{Acts, Circumstances, Effect, Layer, Parameter, Scope};
 use crate::model::number::Number;
 use crate::roll::wall_waves;
 
@@ -9,12 +9,15 @@ use crate::roll::wall_waves;
 pub(super) const EFFECT: Effect = Effect {
     id: "tank.wall_reflection",
     layer: Layer::Tank,
-    equation: "(1 - w V/(0.305 g)) (r1 Re E + r2 Im E), E = phi' through exp(-i w^2 D/g)",
+    equation: "(1 - w V/(0.305 g)) (r1 Re E + r2 Im E), E = phi' through w^q exp(-i w^2 D/g)",
     strengths: &[
         Parameter::new("r1", "1/s", 0.1, [-1.0, 1.0]),
         Parameter::new("r2", "1/s", 0.1, [-1.0, 1.0]),
     ],
-    shapes: &[Parameter::new("td", "s", 1.0, [3.0, 60.0]).held_to(log_odds_of_trip)],
+    shapes: &[
+        Parameter::new("td", "s", 1.0, [3.0, 60.0]).held_to(log_odds_of_trip),
+        Parameter::new("q", "-", 1.0, [-1.0, 5.0]),
+    ],
     nodes: delays,
     scope: Scope::Campaign,
     shows: in_reach,
@@ -37,15 +40,19 @@ const SHARES: [f64; 8] = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3];
 /// Share to which a model's place amid the tank makes its trip known.
 const TRIP_KNOWN: f64 = 0.15;
 
+/// Power of the frequency to which a roll makes waves, which is fitted from here.
+const POWER: f64 = 1.0;
+
 /// Round trips at the group velocity `g/(2 w)` in deep water, as far apart as an echo is wide.
 fn delays(run: &Circumstances) -> Vec<Vec<f64>> {
-    match run.clear_width_m {
+    let delays_s = match run.clear_width_m {
         Some(width_m) => {
             let trip_s = wall_waves::trip_s(width_m, run.natural_rad_s, run.gravity_m_s2);
-            each(&SHARES.map(|share| share * trip_s))
+            SHARES.map(|share| share * trip_s).to_vec()
         }
-        None => each(&[8.0, 10.0, 12.0, 14.0, 17.0, 20.0]),
-    }
+        None => vec![8.0, 10.0, 12.0, 14.0, 17.0, 20.0],
+    };
+    delays_s.into_iter().map(|delay_s| vec![delay_s, POWER]).collect()
 }
 
 /// Logarithm of the odds that an echo after `delay_s` [s], known to `sd_s` [s], is back from the
@@ -59,44 +66,47 @@ fn log_odds_of_trip(run: &Circumstances, delay_s: f64, sd_s: f64) -> f64 {
     (range_s / (sd * std::f64::consts::TAU.sqrt())).ln() - 0.5 * off * off
 }
 
-/// Taps of the echo on either side of its delay, and their spacing in widths of the chirp.
-const N_SIDE: i32 = 10;
-const SPACING: f64 = 0.24;
+/// Shares of the trip from which and until which the echo is heard, and those between which it is
+/// heard in full: frequencies far from those of the roll are not in the record.
+const HEARD: [f64; 2] = [0.45, 1.65];
+const HEARD_IN_FULL: [f64; 2] = [0.7, 1.3];
 
-/// The echo of the roll rate as a complex number: the integral over the delay `s` of
-/// `sqrt(g/(4 pi D)) exp(i (g s^2/(4 D) - pi/4))` times the rate at `t - s`, with `td = 2 w D/g`;
-/// `w phi` is the rate's other component.
+/// The echo of the roll rate as a complex number, one tap every half period: the integral over the
+/// delay `s` of `sqrt(g/(4 pi D)) (s/td)^q exp(i (g s^2/(4 D) - pi/4))` times the rate at `t - s`,
+/// with `td = 2 w D/g`: what arrives after `s` has the frequency `w s/td`.
+///
+/// The rate's other component is `(w phi - phi''/w)/2`, to the second order about `w`.
 fn taps<N: Number>(run: &Circumstances, p: &[N]) -> Vec<Tap<N>> {
     let (trip_s, w) = (p[2], run.natural_rad_s);
-    let step_s = (trip_s * (2.0 / w)).powf(N::from(0.5)) * SPACING;
-    let first_s = trip_s - step_s * f64::from(N_SIDE);
-    // The phase of the chirp is w s^2/(2 td), so it turns by a growing angle from tap to tap.
-    let bend = 2.0 * SPACING * SPACING;
-    let mut phase = rotation(first_s * first_s / trip_s * (0.5 * w));
-    let mut turn = rotation(first_s * step_s / trip_s * w + 0.5 * bend);
-    let more = rotation(N::from(bend));
-    let size = SPACING / std::f64::consts::PI.sqrt() * (1.0 - outrun(run)).max(0.0);
-    let mut taps = Vec::new();
-    for tap in -N_SIDE..=N_SIDE {
-        let at = f64::from(tap) / f64::from(N_SIDE + 1);
-        // A taper: frequencies far from those of the roll are not in the record.
-        let weight = size * (1.0 - at * at);
-        let of_roll = (p[1] * phase[0] - p[0] * phase[1]) * (w * weight);
-        let of_rate = (p[0] * phase[0] + p[1] * phase[1]) * weight;
-        let delay_s = first_s + step_s * f64::from(tap + N_SIDE);
-        // No wave is back within half a period.
-        if delay_s.value() > std::f64::consts::PI / w {
-            taps.push(Tap { delay_s, of_roll, of_rate });
-        }
-        phase = times(phase, turn);
-        turn = times(turn, more);
-    }
-    taps
+    let step_s = std::f64::consts::PI / w;
+    let reach = HEARD.map(|share| share * trip_s.value() / step_s);
+    // No wave is back within half a period.
+    let places = (reach[0].ceil() as i32).max(2)..=reach[1].floor() as i32;
+    let size = step_s * (w / std::f64::consts::TAU).sqrt() * (1.0 - outrun(run)).max(0.0);
+    let size = trip_s.powf(N::from(-0.5)) * size;
+    let tap = |place: i32| {
+        let delay_s = step_s * f64::from(place);
+        let share = trip_s.powf(N::from(-1.0)) * delay_s;
+        let (sin, cos) = (share * (0.5 * w * delay_s)).sin_cos();
+        let weight = size * share.powf(p[3]) * window(share);
+        let of_other = (p[1] * cos - p[0] * sin) * weight;
+        let of_roll = of_other * (0.5 * w);
+        let of_rate = (p[0] * cos + p[1] * sin) * weight;
+        Tap { delay_s, of_roll, of_rate, of_acceleration: of_other * (-0.5 / w) }
+    };
+    places.map(tap).collect()
 }
 
-fn rotation<N: Number>(angle: N) -> [N; 2] {
-    let (sin, cos) = angle.sin_cos();
-    [cos, sin]
+/// From nothing to all and back, smoothly.
+fn window<N: Number>(share: N) -> N {
+    let at = share.value();
+    let (edge, full) =
+        if at < 1.0 { (HEARD[0], HEARD_IN_FULL[0]) } else { (HEARD[1], HEARD_IN_FULL[1]) };
+    if (HEARD_IN_FULL[0]..=HEARD_IN_FULL[1]).contains(&at) {
+        return N::from(1.0);
+    }
+    let (sin, _) = ((share - edge) * (std::f64::consts::FRAC_PI_2 / (full - edge))).sin_cos();
+    sin * sin
 }
 
 #[cfg(test)]
