@@ -61,6 +61,7 @@ fn decay(time_s: Vec<f64>, value: Vec<f64>) -> Run {
         speed_m_s: None,
         roll: Series { time_s, value },
         drive: Series::default(),
+        lead: Series::default(),
         still: None,
         excitation_rad_s: None,
         timing: Timing::default(),

@@ -44,6 +44,7 @@ fn whole(pass: &SimulatedPass) -> Run {
         end: RunEnd::RecordingEnded,
         speed_m_s: None,
         drive: series(pass, Quantity::Force, REST_S),
+        lead: Series::default(),
         still: Some(Still {
             start_s: 0.0,
             end_s: REST_S,

@@ -199,6 +199,7 @@ fn found(truth: &Truth, froude: f64, roll: Series, moment_n_m: &[f64]) -> Run {
         speed_m_s: Some(froude * 4.952),
         drive: Series { time_s: roll.time_s[..n].to_vec(), value: force_n },
         roll,
+        lead: Series::default(),
         still: Some(still),
         excitation_rad_s: forced.then_some(truth.excitation_rad_s),
         timing: Timing::default(),

@@ -52,6 +52,7 @@ fn predicted(survey: &Survey, trained: &Fit, run: usize, noise: &ChannelNoise) -
         let own = summarise(observation, &state, &terms, &[], &white);
         let nothing = vec![0.0; own.eliminated.rest.n() - 1];
         let steps = own.eliminated.back(&nothing);
+        state.own.resize(steps.len(), 0.0);
         state.own.iter_mut().zip(&steps).for_each(|(number, step)| *number += step);
     }
     let left = residual(observation, &predict(observation, &state, &terms));

@@ -6,6 +6,7 @@ use crate::campaign::Campaign;
 use crate::inverse::forced::response::SteadyResponse;
 use crate::inverse::record::Record;
 use crate::model::course::{N_COURSE, N_HARMONICS};
+use crate::model::lead::Lead;
 use crate::model::{Base, Circumstances, Facts};
 use crate::results::IdentifiedRun;
 use crate::roll::cross_modes::Section;
@@ -32,6 +33,8 @@ pub struct Observation {
     pub moment_time_s: Vec<f64>,
     /// Moment as read [N m].
     pub moment_n_m: Vec<f64>,
+    /// Roll before its time zero.
+    pub lead: Lead,
     /// Noise of one value of each channel, from neighbouring values [rad, N m].
     pub rough_noise: [f64; 2],
     /// How far off the times of the roll may be, and the time between it and the moment, where that
@@ -159,11 +162,13 @@ impl Observation {
             if moment.value.is_empty() { 1.0 } else { facts::rough_noise(&moment.value) };
         let quantum_rad = record.quantum_rad;
         let facts = facts::of(&run.run.roll, quantum_rad, rolling_rad_s, run.froude);
+        let lead = lead(&run.run, record, rolling_rad_s);
         Self {
             id: run.id.clone(),
             condition: run.condition.clone(),
             facts,
             at,
+            lead,
             origin_s: record.origin_s,
             roll_time_s: record.time_s.clone(),
             roll_rad: record.roll_rad.clone(),
@@ -188,13 +193,18 @@ impl Observation {
         0.5 * (high - low)
     }
 
+    /// Whether its crests seem cut off below what another run of the channel reads.
+    pub(super) fn is_below(&self, largest_rad: f64) -> bool {
+        self.facts.clip.is_some_and(|clip| largest_rad > 1.02 * clip.level_rad)
+    }
+
     /// Lets go of readings at the end of the channel's range, which are none of the roll, unless
     /// another run read beyond: then it was no end. Whether enough is left: a channel that reads
     /// its end most of the time leaves no run to speak of.
     pub(super) fn read_within(&mut self, largest_rad: f64) -> bool {
         let Some(clip) = self.facts.clip else { return true };
         tracing::debug!(run = self.id, level = clip.level_rad, largest_rad, "clipped");
-        if largest_rad > 1.02 * clip.level_rad {
+        if self.is_below(largest_rad) {
             self.facts.clip = None;
             return true;
         }
@@ -227,6 +237,17 @@ impl Observation {
         }
         self
     }
+}
+
+/// The roll before time zero of a record: the last readings of it may lie in the run itself, which
+/// begins when the model is surely free.
+fn lead(run: &Run, record: &Record, rolling_rad_s: f64) -> Lead {
+    let all = [&run.lead, &run.roll];
+    let times = all.iter().flat_map(|series| &series.time_s).map(|t| t - record.origin_s);
+    let readings = all.iter().flat_map(|series| &series.value);
+    let before = times.zip(readings).take_while(|(t, _)| *t <= 0.0);
+    let (time_s, roll_rad): (Vec<f64>, Vec<f64>) = before.unzip();
+    Lead::new(&time_s, &roll_rad, rolling_rad_s)
 }
 
 /// Longest time from rest to a settled roll [periods] in which nothing but the rod's start went on.

@@ -6,6 +6,7 @@ use super::run_fit::{ChannelNoise, RunState};
 use super::survey::{Fit, Survey};
 use crate::campaign::Tank;
 use crate::model::course::N_COURSE;
+use crate::model::lead::Lead;
 use crate::run::RunKind;
 
 /// A run that could be made.
@@ -124,6 +125,7 @@ impl Plan {
             (0..(span_s / SAMPLE_S) as usize).map(|i| i as f64 * SAMPLE_S).collect();
         let mut run = Observation::clone(like);
         run.at = at;
+        run.lead = Lead::default();
         run.moment_time_s = if at.has_moment { times.clone() } else { Vec::new() };
         run.roll_time_s = times;
         let mut own = vec![amplitude_rad, 0.0, 0.0];

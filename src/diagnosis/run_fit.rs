@@ -3,7 +3,7 @@
 use super::elimination::{Eliminated, Products, Side, product};
 use super::observation::Observation;
 use crate::model::course::{Course, N_COURSE};
-use crate::model::free::Decay;
+use crate::model::free::{Decay, n_stirred};
 use crate::model::imposed::Imposed;
 use crate::model::{Base, Columns, N_BASE, Term};
 use crate::run::RunKind;
@@ -24,7 +24,8 @@ pub(super) struct ChannelNoise {
 /// The numbers of one run.
 #[derive(Debug, Clone)]
 pub(super) struct RunState {
-    /// Initial state or course, then the run's own offset.
+    /// Initial state or course, the run's own offset, then what heeling the model stirred, as far as
+    /// it is known.
     pub(super) own: Vec<f64>,
     /// Base equation.
     pub(super) base: Base,
@@ -48,13 +49,15 @@ fn simulated<T>(
     match run.kind {
         RunKind::Decay => {
             let start = [own[0], own[1]];
-            then(&Simulated::Decay(Decay { run, base, terms, start, time_s }))
+            let (lead, stirred) = (&observation.lead, &own[OFFSET_OF_DECAY + 1..]);
+            then(&Simulated::Decay(Decay { run, base, terms, start, lead, stirred, time_s }))
         }
         RunKind::Forced => {
             let mut numbers = [0.0; N_COURSE];
             numbers.copy_from_slice(&own[..N_COURSE]);
             let course = &Course { numbers };
-            then(&Simulated::Forced(Imposed { run, base, terms, course, time_s }))
+            let lead = &observation.lead;
+            then(&Simulated::Forced(Imposed { run, base, terms, course, lead, time_s }))
         }
     }
 }
@@ -65,7 +68,7 @@ pub(super) fn predict(run: &Observation, state: &RunState, terms: &[Term]) -> Ve
         Simulated::Decay(decay) => decay.readings(),
         Simulated::Forced(imposed) => imposed.readings(),
     });
-    let offset = state.own[state.own.len() - 1];
+    let offset = state.own[offset_place(run)];
     for reading in &mut readings[..run.roll_time_s.len()] {
         *reading += offset;
     }
@@ -104,6 +107,8 @@ pub(super) struct Summary {
     pub(super) misfit: f64,
     /// What the run's own numbers would gain in misfit alone.
     pub(super) own_gain: f64,
+    /// What the stirred states cost in evidence.
+    pub(super) log_occam: f64,
 }
 
 impl Summary {
@@ -135,13 +140,14 @@ pub(super) fn summarise(
             Simulated::Decay(decay) => decay.columns(candidates),
             Simulated::Forced(imposed) => imposed.columns(candidates),
         });
-    let (n_own, n_roll) = (state.own.len(), run.roll_time_s.len());
-    let offset = state.own[n_own - 1];
+    let (place, n_roll) = (offset_place(run), run.roll_time_s.len());
+    let (n_start, n_own) = (place + 1, n_own(run, terms));
+    let offset = state.own[place];
     let mut of_offset = vec![0.0; here.len()];
     of_offset[..n_roll].fill(1.0);
     let mut left = residual(run, &here);
     left[..n_roll].iter_mut().for_each(|left| *left -= offset);
-    changes.insert(n_own - 1, of_offset);
+    changes.insert(place, of_offset);
     let n_candidates: usize = candidates.iter().map(|c| c.effect.strengths.len()).sum();
     let n_known = changes.len() - n_candidates;
     changes.insert(n_known, left);
@@ -153,11 +159,25 @@ pub(super) fn summarise(
     // The offset's prior is one more reading of it.
     let last = products.n() - 1;
     let precision = OFFSET_SD_RAD.powi(-2);
-    products.add(n_own - 1, n_own - 1, precision);
-    products.add(n_own - 1, last, -precision * offset);
+    products.add(place, place, precision);
+    products.add(place, last, -precision * offset);
     products.add(last, last, precision * offset * offset);
+    let mut log_occam = 0.0;
+    for (stirred, sd) in (n_start..n_own).zip(stirred_sds(run).cycle()) {
+        let (now, precision) = (state.own.get(stirred).unwrap_or(&0.0), sd.powi(-2));
+        products.add(stirred, stirred, precision);
+        products.add(stirred, last, -precision * now);
+        products.add(last, last, precision * now * now);
+        log_occam -= sd.ln();
+    }
     let misfit = products.at(last, last);
+    if n_own > n_start {
+        log_occam += 0.5 * products.clone().eliminate(n_start).log_determinant;
+    }
     let eliminated = products.eliminate(n_own);
+    if n_own > n_start {
+        log_occam -= 0.5 * eliminated.log_determinant;
+    }
     let own_gain = misfit - eliminated.rest.at(last - n_own, last - n_own);
     let mut next = 0;
     let candidates = candidates.iter().map(|candidate| {
@@ -166,7 +186,33 @@ pub(super) fn summarise(
         eliminated.beside(&Side::of(&tried[first..next], known))
     });
     let candidates = candidates.collect();
-    Summary { eliminated, candidates, misfit, own_gain }
+    Summary { eliminated, candidates, misfit, own_gain, log_occam }
+}
+
+/// Place of the offset of a decay among its own numbers, behind roll and rate.
+const OFFSET_OF_DECAY: usize = 2;
+/// What heeling the model may leave of states that it stirs, as a share of its amplitude, where
+/// nobody knows how it was heeled, and beyond what is known of it.
+const STIRRED: [f64; 2] = [0.3, 0.003];
+
+/// Place of a run's offset among its own numbers.
+fn offset_place(run: &Observation) -> usize {
+    match run.at.kind {
+        RunKind::Decay => OFFSET_OF_DECAY,
+        RunKind::Forced => N_COURSE,
+    }
+}
+
+/// How many numbers of its own a run has under some terms.
+fn n_own(run: &Observation, terms: &[Term]) -> usize {
+    let n_stirred = if run.at.kind == RunKind::Decay { n_stirred(terms) } else { 0 };
+    offset_place(run) + 1 + n_stirred
+}
+
+/// Prior standard deviations of a stirred state [rad] and of its rate [rad/s].
+fn stirred_sds(run: &Observation) -> impl Iterator<Item = f64> + Clone {
+    let sd = STIRRED[usize::from(run.lead.is_known())] * run.at.amplitude_rad;
+    [sd, sd * run.at.natural_rad_s].into_iter()
 }
 
 /// Twice the negative logarithm of the likelihood, noise given, up to a constant.
@@ -177,7 +223,10 @@ pub(super) fn misfit(
     noise: &ChannelNoise,
 ) -> f64 {
     let mut left = residual(run, &predict(run, state, terms));
-    let offset = state.own[state.own.len() - 1] / OFFSET_SD_RAD;
+    let place = offset_place(run);
+    let offset = state.own[place] / OFFSET_SD_RAD;
     whiten(run, noise, &mut left);
-    product(&left, &left) + offset * offset
+    let stirred = state.own[place + 1..n_own(run, terms).min(state.own.len())].iter();
+    let stirred = stirred.zip(stirred_sds(run).cycle()).map(|(now, sd)| (now / sd).powi(2));
+    product(&left, &left) + offset * offset + stirred.sum::<f64>()
 }

@@ -68,6 +68,8 @@ pub(super) struct Joint<'a> {
     /// Deviation from the law, then base, terms, record of each run.
     deviating: Vec<Products>,
     priors: Products,
+    /// What the runs' stirred states cost in evidence.
+    log_occam: f64,
 }
 
 impl<'a> Joint<'a> {
@@ -78,7 +80,8 @@ impl<'a> Joint<'a> {
         let deviating = each.map(|(run, summary)| deviating(survey, fit, run, summary)).collect();
         let mut priors = Products::zero(layout.n + 1);
         add_priors(survey, fit, &layout, &mut priors);
-        Self { survey, fit, layout, places, deviating, priors }
+        let log_occam = summaries.iter().map(|summary| summary.log_occam).sum();
+        Self { survey, fit, layout, places, deviating, priors, log_occam }
     }
 
     /// A candidate of a run beside its deviation from the law, base, terms and record.
@@ -109,7 +112,8 @@ impl<'a> Joint<'a> {
         let misfit_here = all.at(self.layout.n, self.layout.n);
         let eliminated = all.eliminate(self.layout.n);
         let least_misfit = eliminated.rest.at(0, 0);
-        let mut log_evidence = -0.5 * (least_misfit + eliminated.log_determinant);
+        let mut log_evidence = self.log_occam;
+        log_evidence -= 0.5 * (least_misfit + eliminated.log_determinant);
         log_evidence += marginals.iter().map(|m| m.log_occam).sum::<f64>();
         for extension in &fit.extensions {
             for k in 0..extension.effect.n_parameters() {
@@ -301,6 +305,8 @@ pub(super) fn moved_state(
     }
     let own = summary.eliminated.back(&whole);
     let mut state = fit.states[run].clone();
+    // A run that had no such state yet begins with none stirred.
+    state.own.resize(own.len(), 0.0);
     state.own.iter_mut().zip(&own).for_each(|(number, step)| *number += share * step);
     state.base.natural_rad_s += share * whole[0];
     state.base.b1_per_s += share * whole[1];

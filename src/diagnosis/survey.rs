@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::cores;
 use super::observation::Observation;
 use super::run_fit::{ChannelNoise, RunState, Summary, misfit, predict, residual, summarise};
-use crate::model::{Acts, Base, Effect, N_BASE, Term};
+use crate::model::{Acts, Base, Effect, N_BASE, Scope, Term};
 
 /// The runs with the condition that each belongs to.
 pub(super) struct Survey {
@@ -80,11 +80,24 @@ impl Extension {
         Some(Term { effect: self.effect, values: self.slots[slot].clone() })
     }
 
-    /// The same in some of its runs, with the sets of parameters that these have.
-    fn of_runs(&self, places: &[usize]) -> Self {
+    /// The same in other runs: those at `places` of its own have the sets that they have there, and
+    /// any other has that of the runs like it.
+    fn of_runs(&self, survey: &Survey, other: &Survey, places: &[Option<usize>]) -> Self {
+        let is_like = |run: usize, known: usize| match self.effect.scope {
+            Scope::Campaign => true,
+            Scope::Condition => survey.runs[run].condition == other.runs[known].condition,
+            Scope::Run => false,
+        };
+        let like = |run: usize| {
+            let mut all = self.slot_of.iter().enumerate();
+            all.find_map(|(known, slot)| slot.filter(|_| is_like(run, known)))
+        };
         let mut kept: Vec<usize> = Vec::new();
-        let slot_of = places.iter().map(|place| {
-            let slot = self.slot_of[*place]?;
+        let slot_of = places.iter().enumerate().map(|(run, place)| {
+            let slot = match place {
+                Some(place) => self.slot_of[*place],
+                None => like(run).filter(|_| (self.effect.shows)(&survey.runs[run].at)),
+            }?;
             Some(kept.iter().position(|one| *one == slot).unwrap_or_else(|| {
                 kept.push(slot);
                 kept.len() - 1
@@ -101,6 +114,13 @@ impl Survey {
     pub(super) fn new(mut runs: Vec<Observation>) -> Self {
         let mut conditions: Vec<String> = Vec::new();
         let largest_rad = runs.iter().map(Observation::half_range_rad).fold(0.0, f64::max);
+        // A channel has one range: crests that are flat wherever they are have another cause.
+        let is_clipped = |run: &&Observation| run.facts.clip.is_some();
+        let n_clipped = runs.iter().filter(is_clipped).count();
+        let n_within = runs.iter().filter(is_clipped).filter(|run| run.is_below(largest_rad));
+        if 2 * n_within.count() > n_clipped {
+            runs.iter_mut().for_each(|run| run.facts.clip = None);
+        }
         let read = |run: &mut Observation| run.read_within(largest_rad);
         let is_enough: Vec<bool> = runs.iter_mut().map(read).collect();
         if is_enough.iter().any(|enough| *enough) {
@@ -132,20 +152,32 @@ impl Survey {
         Fit { laws, log_scale: 0.0, extensions: Vec::new(), states }
     }
 
-    /// A fit to other records of the same runs, from which a fit to these can start; none where
-    /// they are not the same.
+    /// A fit to other records of the same runs, or of some of them, from which a fit to these can
+    /// start; none where a condition has no such run.
     pub(super) fn adopted(&self, other: &Self, fit: &Fit) -> Option<Fit> {
         let place = |run: &Arc<Observation>| other.runs.iter().position(|o| o.id == run.id);
-        let places: Vec<usize> = self.runs.iter().map(place).collect::<Option<_>>()?;
+        let places: Vec<Option<usize>> = self.runs.iter().map(place).collect();
         let law = |name: &String| {
             let known = other.conditions.iter().position(|c| c == name)?;
             Some(fit.laws[known])
         };
+        let laws: Vec<Law> = self.conditions.iter().map(law).collect::<Option<_>>()?;
+        let state = |run: usize| match places[run] {
+            Some(place) => fit.states[place].clone(),
+            None => {
+                let observation = &self.runs[run];
+                let law = laws[self.condition_of[run]].at(observation.at.froude);
+                let [natural_rad_s, b1_per_s, b3_s] = law;
+                let base = Base { natural_rad_s, b1_per_s, b3_s, log_scale: fit.log_scale };
+                RunState { own: observation.start.clone(), base }
+            }
+        };
+        let extensions = fit.extensions.iter().map(|one| one.of_runs(self, other, &places));
         Some(Fit {
-            laws: self.conditions.iter().map(law).collect::<Option<_>>()?,
             log_scale: fit.log_scale,
-            extensions: fit.extensions.iter().map(|one| one.of_runs(&places)).collect(),
-            states: places.iter().map(|place| fit.states[*place].clone()).collect(),
+            extensions: extensions.collect(),
+            states: (0..self.runs.len()).map(state).collect(),
+            laws,
         })
     }
 

@@ -6,6 +6,7 @@ use super::reversed::Reversed;
 use super::survey::Survey;
 use super::verdict::{Diagnosis, Verdict, told};
 use crate::campaign::Tank;
+use crate::run::RunKind;
 
 /// Periods of a decay over which a model that starts far away still follows it.
 const FIRST_PERIODS: f64 = 6.0;
@@ -24,25 +25,41 @@ pub struct Gathered {
 /// Diagnoses the runs of a campaign; none without runs.
 ///
 /// What comes after a decay may be a beat with water in the hull or waves back from the walls, or a
-/// hand: it is believed where it is explained to the last.
+/// hand: it is believed where it is explained to the last. Where the runs together are not
+/// explained, the decays or the forced runs alone may say from where they would be.
 pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
     let Gathered { runs, whole, reversed } = gathered;
     if runs.is_empty() {
         return None;
     }
-    let survey = Survey::new(runs);
-    let grown = grow(&survey, None);
     let tell = &|survey: &Survey, grown: &Grown| told(survey, grown, &reversed, tank);
-    let explained = if whole.is_empty() { None } else { explained(whole, &survey, &grown, tell) };
-    Some(explained.unwrap_or_else(|| tell(&survey, &grown)))
+    let of_one_kind = Parts::of(&runs);
+    let survey = Survey::new(runs);
+    let mut grown = grow(&survey, None);
+    let mut together = tell(&survey, &grown);
+    if together.verdict == Verdict::Unexplained {
+        for stem in of_one_kind.stems(&survey) {
+            let other = grow(&survey, Some(stem));
+            let diagnosis = tell(&survey, &other);
+            if diagnosis.verdict != Verdict::Unexplained {
+                (grown, together) = (other, diagnosis);
+                break;
+            }
+        }
+    }
+    let explained =
+        if whole.is_empty() { None } else { explained(whole, &survey, &grown, &of_one_kind, tell) };
+    Some(explained.unwrap_or(together))
 }
 
 /// The diagnosis with what the model did after its decays, where that explains it: from what the
-/// decays alone say, which may lead astray, from the first periods, or from nothing.
+/// decays alone say, which may lead astray, from the first periods, from runs of one kind, or from
+/// nothing.
 fn explained(
     whole: Vec<Observation>,
     survey: &Survey,
     grown: &Grown,
+    of_one_kind: &Parts,
     tell: &dyn Fn(&Survey, &Grown) -> Diagnosis,
 ) -> Option<Diagnosis> {
     let short = whole.iter().map(|run| run.clone().first_periods(FIRST_PERIODS));
@@ -55,10 +72,32 @@ fn explained(
     let first = stem(&whole, survey, grown).and_then(|stem| told_from(Some(stem)));
     let of_short = || stem(&whole, &short, &grow(&short, None));
     let second = || of_short().and_then(|stem| told_from(Some(stem)));
-    first.or_else(second).or_else(|| told_from(None))
+    let third = || of_one_kind.stems(&whole).find_map(|stem| told_from(Some(stem)));
+    first.or_else(second).or_else(third).or_else(|| told_from(None))
 }
 
-/// What has grown on other records of the same runs, where that is more than the base model.
+/// The runs of each kind, where there are both.
+struct Parts(Vec<Vec<Observation>>);
+
+impl Parts {
+    fn of(runs: &[Observation]) -> Self {
+        let kinds = [RunKind::Decay, RunKind::Forced];
+        let of_kind = |kind| runs.iter().filter(|run| run.at.kind == kind).cloned().collect();
+        let parts: Vec<Vec<Observation>> = kinds.map(of_kind).to_vec();
+        Self(if parts.iter().any(Vec::is_empty) { Vec::new() } else { parts })
+    }
+
+    /// What has grown on the runs of each kind alone, from which a model of all may grow.
+    fn stems(&self, survey: &Survey) -> impl Iterator<Item = Stem> {
+        self.0.iter().filter_map(|part| {
+            let part = Survey::new(part.clone());
+            stem(survey, &part, &grow(&part, None))
+        })
+    }
+}
+
+/// What has grown on other records of the same runs, or of some of them, where that is more than
+/// the base model.
 fn stem(whole: &Survey, survey: &Survey, grown: &Grown) -> Option<Stem> {
     if grown.entered.is_empty() {
         return None;

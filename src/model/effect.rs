@@ -240,6 +240,8 @@ pub struct LagLaw<P, S> {
 pub struct Lag {
     /// Number of states, at most [`MOST_LAGS`].
     pub n_states: usize,
+    /// Whether heeling the model stirs them, so that each release finds them as they happen to be.
+    pub is_stirred: bool,
     /// Slopes of the states.
     pub slope: LagLaw<[f64; MOST_LAGS], [Sloped; MOST_LAGS]>,
     /// Moment per unit inertia [rad/s2] of the states.

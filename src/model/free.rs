@@ -2,9 +2,10 @@
 
 use super::channel::{self, Tangent};
 use super::echo::{Echo, StepEcho};
-use super::effect::{Acts, Circumstances, Instant, MOST_LAGS};
+use super::effect::{Acts, Circumstances, Instant, Lag, MOST_LAGS};
 use super::free_changes::Changes;
 use super::history::History;
+use super::lead::Lead;
 use super::term::{Base, Columns, Term};
 
 /// Runge-Kutta steps a period: with the fifth-degree course between, the phase of a roll errs by
@@ -25,6 +26,10 @@ pub struct Decay<'a> {
     pub terms: &'a [Term],
     /// Roll [rad] and rate [rad/s] at the start.
     pub start: [f64; 2],
+    /// The roll before it, which what heeling stirs has followed.
+    pub lead: &'a Lead,
+    /// What stirred states hold beyond that, as [`n_stirred`] counts them; nil where they lack.
+    pub stirred: &'a [f64],
     /// Times of the roll and of the moment [s].
     pub time_s: [&'a [f64]; 2],
 }
@@ -48,8 +53,8 @@ impl Decay<'_> {
         }
     }
 
-    /// The same with what each number does to them: initial roll and rate, base equation,
-    /// parameters of the terms, strengths of the candidates.
+    /// The same with what each number does to them: initial roll and rate, stirred states, base
+    /// equation, parameters of the terms, strengths of the candidates.
     pub fn columns(&self, candidates: &[Term]) -> Columns {
         match self.n_lags() {
             0 => self.changed::<2>(candidates),
@@ -60,11 +65,38 @@ impl Decay<'_> {
     }
 
     fn n_lags(&self) -> usize {
-        let states = |term: &Term| match term.effect.acts {
-            Acts::Lagging(lag) => lag.n_states,
-            _ => 0,
-        };
-        self.terms.iter().map(states).sum()
+        self.terms.iter().map(|term| states(term).0).sum()
+    }
+
+    /// Lets the stirred states begin where they are at the release.
+    fn begin(&self, state: &mut [f64]) {
+        let mut next = N_START;
+        for term in self.terms {
+            let Acts::Lagging(lag) = term.effect.acts else { continue };
+            let own = next..next + lag.n_states;
+            next = own.end;
+            state[own].copy_from_slice(&self.begun(&lag, &term.values)[..lag.n_states]);
+        }
+        self.stirred_places().zip(self.stirred).for_each(|(place, value)| state[place] += value);
+    }
+
+    /// Where the states of an effect are at the release.
+    pub(super) fn begun(&self, lag: &Lag, values: &[f64]) -> [f64; MOST_LAGS] {
+        if lag.is_stirred {
+            self.lead.states(lag, values, self.run, self.base)
+        } else {
+            [0.0; MOST_LAGS]
+        }
+    }
+
+    /// Places of the stirred states among all.
+    pub(super) fn stirred_places(&self) -> impl Iterator<Item = usize> {
+        let mut next = N_START;
+        self.terms.iter().flat_map(move |term| {
+            let (n_states, n_stirred) = states(term);
+            next += n_states;
+            next - n_states..next - n_states + n_stirred
+        })
     }
 
     /// The motion at one instant; the acceleration is that of the base equation.
@@ -125,7 +157,8 @@ impl Decay<'_> {
         let mut history = History::new(step_s, n_steps);
         let mut points: Vec<[f64; N]> = Vec::new();
         let mut state = [0.0; N];
-        state[..2].copy_from_slice(&self.start);
+        state[..N_START].copy_from_slice(&self.start);
+        self.begin(&mut state);
         let echoes = self.echoes(step_s);
         let heard = |history: &History, step: usize, is_half_after: bool| -> f64 {
             echoes.iter().map(|echo| echo.at(history, step, is_half_after)).sum()
@@ -221,10 +254,24 @@ impl Decay<'_> {
             if is_through[channel] {
                 let (terms, tangents) = (self.terms, &tangents[channel]);
                 let columns = &mut columns;
-                channel::add_tangents(terms, N_START, channel, &instants, tangents, columns, first);
+                let n_start = N_START + n_stirred(terms);
+                channel::add_tangents(terms, n_start, channel, &instants, tangents, columns, first);
             }
         }
         Columns { here, columns }
+    }
+}
+
+/// Number of states of the terms of a decay that heeling the model stirs.
+pub fn n_stirred(terms: &[Term]) -> usize {
+    terms.iter().map(|term| states(term).1).sum()
+}
+
+/// Number of states of a term, and of those among them that are stirred.
+fn states(term: &Term) -> (usize, usize) {
+    match term.effect.acts {
+        Acts::Lagging(lag) => (lag.n_states, if lag.is_stirred { lag.n_states } else { 0 }),
+        _ => (0, 0),
     }
 }
 

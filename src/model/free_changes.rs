@@ -22,8 +22,12 @@ pub(super) struct Changes<const N: usize> {
     step_s: f64,
     jacobians: Vec<Matrix<N>>,
     transitions: Vec<Transition<N>>,
+    /// Which states the first columns start.
+    started: Vec<usize>,
     /// Number of columns that the equation's own numbers have.
     n_forced: usize,
+    /// What these did to the stirred states before the release.
+    begun: Vec<[f64; N]>,
     /// What these do to the slopes, point by point.
     forcing: Vec<[f64; N]>,
     /// What the motion some time ago does to the acceleration now.
@@ -70,15 +74,27 @@ impl<const N: usize> Changes<N> {
             if candidates.is_empty() { Vec::new() } else { (0..n_points).map(at).collect() };
         let candidates = candidates
             .iter()
-            .flat_map(|term| pushes(term, (&instants, &path.history), &quotients, step_s))
+            .flat_map(|term| pushes(decay, term, (&instants, &path.history), &quotients, step_s))
             .collect();
         let echoes = decay.echoes(2.0 * step_s);
-        Self { step_s, jacobians, transitions, n_forced, forcing, echoes, candidates }
+        let begun = begun(decay, n_forced);
+        let started = (0..N_START).chain(decay.stirred_places()).collect();
+        Self {
+            started,
+            begun,
+            step_s,
+            jacobians,
+            transitions,
+            n_forced,
+            forcing,
+            echoes,
+            candidates,
+        }
     }
 
-    /// Number of columns: start, base, parameters of the terms, candidates.
+    /// Number of columns: start and stirred states, base, parameters of the terms, candidates.
     pub(super) fn n_columns(&self) -> usize {
-        N_START + self.n_forced + 1 + self.candidates.len()
+        self.started.len() + self.n_forced + 1 + self.candidates.len()
     }
 
     /// Room for the change of the motion with a number.
@@ -89,23 +105,25 @@ impl<const N: usize> Changes<N> {
     /// Change of the motion with the number of a column; false where it does not move.
     pub(super) fn fill(&self, column: usize, change: &mut History) -> bool {
         let still = [0.0; N];
-        if column < N_START {
+        if let Some(place) = self.started.get(column) {
             let mut start = still;
-            start[column] = 1.0;
+            start[*place] = 1.0;
             self.respond(start, |_| still, change);
             return true;
         }
         // The moment's scale does not move a decay.
-        let own = match column - N_START {
+        let own = match column - self.started.len() {
             N_MOVING => return false,
             scaled if scaled > N_MOVING => scaled - 1,
             moving => moving,
         };
         if own < self.n_forced {
             let at = |k: usize| self.forcing[k * self.n_forced + own];
-            let moves = (0..self.jacobians.len()).any(|k| at(k).iter().any(|f| *f != 0.0));
+            let begun = self.begun[own];
+            let moves = begun != still
+                || (0..self.jacobians.len()).any(|k| at(k).iter().any(|f| *f != 0.0));
             if moves {
-                self.respond(still, at, change);
+                self.respond(begun, at, change);
             }
             return moves;
         }
@@ -142,6 +160,27 @@ impl<const N: usize> Changes<N> {
             }
         }
     }
+}
+
+/// What the numbers of the equation did to the states that were stirred before a decay.
+fn begun<const N: usize>(decay: &Decay<'_>, n_forced: usize) -> Vec<[f64; N]> {
+    let mut begun = vec![[0.0; N]; n_forced];
+    let (mut first, mut state) = (N_MOVING, N_START);
+    for Term { effect, values } in decay.terms {
+        let columns = first..first + values.len();
+        first = columns.end;
+        let Acts::Lagging(lag) = effect.acts else { continue };
+        let states = state..state + lag.n_states;
+        state = states.end;
+        if lag.is_stirred && states.end <= N {
+            let changes = decay.lead.changes(&lag, values, decay.run, decay.base);
+            for (column, change) in (0..N_NAMED).chain(columns).zip(changes) {
+                let own = &mut begun[column][states.clone()];
+                own.iter_mut().zip(change).for_each(|(own, change)| *own += change);
+            }
+        }
+    }
+    begun
 }
 
 /// The echoes of a decay's terms, and what each of their parameters does to them.
@@ -285,6 +324,7 @@ impl<const N: usize> About<'_, N> {
 
 /// What each strength of a candidate does to the acceleration at every point, where it moves it.
 fn pushes(
+    decay: &Decay<'_>,
     term: &Term,
     (instants, history): (&[Instant<'_>], &History),
     quotients: &[Quotient],
@@ -292,7 +332,10 @@ fn pushes(
 ) -> Vec<Option<Vec<f64>>> {
     let shows = (term.effect.shows)(instants[0].run);
     let remembered = match term.effect.acts {
-        Acts::Lagging(lag) if shows => follow(&lag, &term.values, instants, step_s),
+        Acts::Lagging(lag) if shows => {
+            let start = decay.begun(&lag, &term.values);
+            follow(&lag, &term.values, start, instants, step_s)
+        }
         _ => Vec::new(),
     };
     term.nudged_each()

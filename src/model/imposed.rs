@@ -5,11 +5,13 @@ use super::course::Course;
 use super::echo::{CourseEcho, Echo};
 use super::effect::{Acts, Circumstances, Instant, MOST_LAGS};
 use super::lagging::follow;
+use super::lead::Lead;
 use super::linear::between;
 use super::term::{Base, Term};
 
-/// Periods before the start over which effects that remember settle.
-const PERIODS_BEFORE: f64 = 8.0;
+/// Periods before the record over which effects that remember settle where nobody knows how the
+/// model rolled then.
+const PERIODS_BEFORE: f64 = 30.0;
 const STEPS_PER_PERIOD: f64 = 96.0;
 /// Points of some three thousand periods, more than any run has.
 const MOST_POINTS: f64 = 3e5;
@@ -27,11 +29,13 @@ pub struct Imposed<'a> {
     pub terms: &'a [Term],
     /// The course of the roll.
     pub course: &'a Course,
+    /// The roll before the record.
+    pub lead: &'a Lead,
     /// Times of the roll and of the moment [s].
     pub time_s: [&'a [f64]; 2],
 }
 
-/// Points a step apart, from well before the start to the last reading.
+/// Points a step apart, from the start, or well before it, to the last reading.
 pub(super) struct Points {
     pub(super) from_s: f64,
     pub(super) step_s: f64,
@@ -105,7 +109,7 @@ impl<'a> Imposed<'a> {
     fn points(&self) -> Points {
         let period_s = std::f64::consts::TAU / self.course.frequency_rad_s();
         let step_s = period_s / STEPS_PER_PERIOD;
-        let from_s = -PERIODS_BEFORE * period_s;
+        let from_s = if self.lead.is_known() { 0.0 } else { -PERIODS_BEFORE * period_s };
         let last_s = self.time_s.iter().filter_map(|t| t.last()).fold(0.0_f64, |a, b| a.max(*b));
         let n = ((last_s - from_s) / step_s).ceil() + 1.0;
         // A fit that runs away to any frequency is turned away by what it leaves, not by its time.
@@ -131,7 +135,10 @@ impl<'a> Imposed<'a> {
         let instants: Vec<Instant<'_>> =
             points.times_s().map(|t| self.instant(t, self.course.at(t))).collect();
         let each = self.terms.iter().filter_map(|term| match term.effect.acts {
-            Acts::Lagging(lag) => Some(follow(&lag, &term.values, &instants, points.step_s)),
+            Acts::Lagging(lag) => {
+                let start = self.lead.states(&lag, &term.values, self.run, self.base);
+                Some(follow(&lag, &term.values, start, &instants, points.step_s))
+            }
             _ => None,
         });
         let states = each.collect();

@@ -145,7 +145,10 @@ impl<'a> Changes<'a> {
             points.times_s().map(|t| imposed.instant(t, imposed.course.at(t))).collect();
         all.lagged = all.lags_changed(&instants);
         let followed = candidates.iter().filter(shown).map(|term| match term.effect.acts {
-            Acts::Lagging(lag) => follow(&lag, &term.values, &instants, points.step_s),
+            Acts::Lagging(lag) => {
+                let start = imposed.lead.states(&lag, &term.values, imposed.run, imposed.base);
+                follow(&lag, &term.values, start, &instants, points.step_s)
+            }
             _ => Vec::new(),
         });
         all.followed = followed.collect();
@@ -174,6 +177,8 @@ impl<'a> Changes<'a> {
                 .collect();
             let jacobian = jacobian(&rows[0]);
             let named = N_COURSE..N_COURSE + N_NAMED;
+            let Imposed { lead, run, base, .. } = self.imposed;
+            let begun = lead.changes(&lag, values, run, base);
             let lagged = (0..self.n_columns).map(|column| {
                 let forcing = |k: usize| -> [f64; MOST_LAGS] {
                     rows[k].map(|row| match column {
@@ -182,8 +187,13 @@ impl<'a> Changes<'a> {
                         j => row.slopes[slope::PARAMETER + j - own.start],
                     })
                 };
+                let start = match column {
+                    j if named.contains(&j) => begun[j - N_COURSE],
+                    j if own.contains(&j) => begun[N_NAMED + j - own.start],
+                    _ => [0.0; MOST_LAGS],
+                };
                 let moves = column < N_COURSE || own.contains(&column) || named.contains(&column);
-                moves.then(|| driven(&jacobian, forcing, rows.len(), step_s))
+                moves.then(|| driven(&jacobian, start, forcing, rows.len(), step_s))
             });
             all.push(lagged.collect());
         }

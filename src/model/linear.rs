@@ -81,9 +81,10 @@ impl<const N: usize> Transition<N> {
     }
 }
 
-/// States of a system that does not change in time, at rest before the first point, at every point.
+/// States of a system that does not change in time at every point, from those at the first.
 pub(super) fn driven<const N: usize>(
     jacobian: &Matrix<N>,
+    start: [f64; N],
     forcing: impl Fn(usize) -> [f64; N],
     n_points: usize,
     step_s: f64,
@@ -91,7 +92,7 @@ pub(super) fn driven<const N: usize>(
     let transition = Transition::new(jacobian, jacobian, jacobian, step_s);
     let forcing: Vec<[f64; N]> = (0..n_points).map(forcing).collect();
     let last = n_points - 1;
-    let mut state = [0.0; N];
+    let mut state = start;
     let mut states = Vec::with_capacity(n_points);
     states.push(state);
     for k in 0..last {

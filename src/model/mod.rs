@@ -11,6 +11,7 @@ pub mod effects;
 pub mod free;
 pub mod history;
 pub mod imposed;
+pub mod lead;
 pub mod model_file;
 pub mod number;
 pub mod term;

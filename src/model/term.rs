@@ -58,8 +58,9 @@ pub(super) mod tests {
     use super::*;
     use crate::model::course::{Course, N_COURSE};
     use crate::model::effects;
-    use crate::model::free::Decay;
+    use crate::model::free::{Decay, n_stirred};
     use crate::model::imposed::Imposed;
+    use crate::model::lead::Lead;
     use crate::model::{Acts, Circumstances};
     use crate::run::RunKind;
 
@@ -90,7 +91,11 @@ pub(super) mod tests {
     /// Start or course, then the base equation, then the parameters of the term.
     fn numbers(kind: RunKind, term: Option<&Term>) -> Vec<f64> {
         let mut numbers = match kind {
-            RunKind::Decay => vec![0.2, -0.1],
+            RunKind::Decay => [
+                vec![0.2, -0.1],
+                vec![0.03; term.map_or(0, |term| n_stirred(std::slice::from_ref(term)))],
+            ]
+            .concat(),
             RunKind::Forced => vec![0.01, 0.15, -0.05, 0.002, 0.001, -0.003, 0.004, 5.9],
         };
         numbers.extend([6.8, 0.38, 0.15, 0.02]);
@@ -98,10 +103,17 @@ pub(super) mod tests {
         numbers
     }
 
+    /// Heeling the model within a second, three seconds before its release.
+    fn lead() -> Lead {
+        let times: Vec<f64> = (0..600).map(|k| -6.0 + 0.01 * f64::from(k)).collect();
+        let rolls: Vec<f64> = times.iter().map(|t| 0.2 * (t + 4.0).clamp(0.0, 1.0)).collect();
+        Lead::new(&times, &rolls, 6.9)
+    }
+
     /// Readings and columns under the numbers.
     fn columns(kind: RunKind, term: Option<&Term>, numbers: &[f64], tried: &[Term]) -> Columns {
         let run = run(kind);
-        let n_own = if kind == RunKind::Decay { 2 } else { N_COURSE };
+        let n_own = numbers.len() - N_BASE - term.map_or(0, |term| term.values.len());
         let of_base = &numbers[n_own..];
         let base = Base {
             natural_rad_s: of_base[0],
@@ -116,12 +128,13 @@ pub(super) mod tests {
         let time_s = [&times[..], &times[..]];
         let (run, base, terms) = (&run, &base, &terms[..]);
         if kind == RunKind::Decay {
-            let start = [numbers[0], numbers[1]];
-            return Decay { run, base, terms, start, time_s }.columns(tried);
+            let (start, stirred) = ([numbers[0], numbers[1]], &numbers[2..n_own]);
+            return Decay { run, base, terms, start, lead: &lead(), stirred, time_s }
+                .columns(tried);
         }
         let mut course = Course { numbers: [0.0; N_COURSE] };
         course.numbers.copy_from_slice(&numbers[..N_COURSE]);
-        Imposed { run, base, terms, course: &course, time_s }.columns(tried)
+        Imposed { run, base, terms, course: &course, lead: &lead(), time_s }.columns(tried)
     }
 
     fn rms(values: impl Iterator<Item = f64>) -> f64 {
@@ -185,7 +198,11 @@ pub(super) mod tests {
                 let told = &without.columns[without.columns.len() - n_strengths..];
                 for ((values, by), told) in tried.nudged_each().into_iter().zip(told) {
                     let with = Term { effect: tried.effect, values };
-                    let numbers = self::numbers(kind, Some(&with));
+                    let mut numbers = self::numbers(kind, Some(&with));
+                    if kind == RunKind::Decay {
+                        // A candidate is tried as if nothing had been stirred.
+                        numbers[2..2 + n_stirred(std::slice::from_ref(&with))].fill(0.0);
+                    }
                     let there = columns(kind, Some(&with), &numbers, &[]).here;
                     let slopes: Vec<f64> =
                         there.iter().zip(&without.here).map(|(t, n)| (t - n) / by).collect();

@@ -97,6 +97,8 @@ fn append(series: &mut Series, later: &Series) {
 fn begin_with(run: &mut IdentifiedRun, release: &Aftermath) {
     let Series { time_s, value } = &release.roll;
     run.run.start_s = time_s[0];
+    run.run.lead.time_s.retain(|t| *t < time_s[0]);
+    run.run.lead.value.truncate(run.run.lead.time_s.len());
     run.run.roll = release.roll.clone();
     run.run.drive = release.drive.clone();
     let known = &mut run.identification;

@@ -11,6 +11,7 @@ use super::decay::N_HALF_CYCLES_MIN;
 use super::driven;
 use super::forced;
 use super::forced::Cycle;
+use super::records::LEAD_S;
 use super::records::Records;
 
 /// Ratio of last to first amplitude above which a decay does not tell its damping from noise.
@@ -129,6 +130,7 @@ impl Stretch<'_> {
             end: self.end,
             speed_m_s,
             drive: records.drive.track.series(start_s, end_s),
+            lead: records.roll.series(start_s - LEAD_S, start_s.next_down()),
             roll,
             still: records.still_before(start_s, mean_rad, reach_rad),
             excitation_rad_s,

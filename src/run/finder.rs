@@ -16,6 +16,7 @@ use super::half_cycles::Swing;
 use super::motion::Motion;
 use super::passed_over::PassedOver;
 use super::records::KEPT_S;
+use super::records::LEAD_S;
 use super::records::Records;
 
 /// Samples kept per channel: beyond it a run is closed, so that memory stays within some 100 MB.
@@ -222,8 +223,9 @@ impl RunFinder {
         let turn_s = self.half_cycles.turn().map(|turn| turn.time_s);
         let followed_s = self.following.map(|following| following.needed_from_s());
         let needed = [self.motion.needed_from_s(), followed_s, waiting_s, turn_s];
-        let from_s = needed.into_iter().flatten().fold(now_s - KEPT_S, f64::min);
-        self.records.forget_before(from_s);
+        let first_s = needed.into_iter().flatten().reduce(f64::min);
+        let from_s = first_s.map_or(f64::INFINITY, |first_s| first_s - LEAD_S);
+        self.records.forget_before(from_s.min(now_s - KEPT_S));
     }
 }
 

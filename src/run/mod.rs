@@ -121,6 +121,8 @@ pub struct Run {
     pub speed_m_s: Option<f64>,
     /// Roll [rad] from `start_s` to `end_s`.
     pub roll: Series,
+    /// Roll [rad] just before, as far as it is kept: what remembers had begun by then.
+    pub lead: Series,
     /// Rod force [N] or exciting moment [N m] as recorded, over the same stretch, if one was.
     pub drive: Series,
     /// The still stretch before the run, when there was one.

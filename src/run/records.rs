@@ -14,6 +14,8 @@ use super::track::Track;
 
 /// Longest still stretch that is averaged [s]; also how long every sample is kept.
 pub(super) const KEPT_S: f64 = 20.0;
+/// How long before a run its roll is kept [s]: heeling the model and holding it there.
+pub(super) const LEAD_S: f64 = 12.0;
 /// Still stretches remembered: the rest, and the heel at which the model was held after it.
 const N_STILL: usize = 4;
 /// Standard deviation of three bins weighted 1/4, 1/2, 1/4.

@@ -17,6 +17,7 @@ pub(super) const EFFECT: Effect = Effect {
     shows: any_run,
     acts: Acts::Lagging(Lag {
         n_states: 1,
+        is_stirred: false,
         slope: LagLaw { plain: slope, sloped: slope },
         moment: LagLaw { plain: moment, sloped: moment },
     }),
