@@ -7,7 +7,7 @@ use super::settle::Settled;
 use super::solve::solve;
 use super::survey::{Extension, Fit, Survey};
 use crate::model::effects;
-use crate::model::{Acts, Layer, Scope};
+use crate::model::{Acts, Layer};
 
 /// Difference of misfits below which two effects cannot be told apart.
 pub(super) const SAME: f64 = 12.0;
@@ -91,7 +91,7 @@ pub(super) fn is_same(
 /// and only what they cost in evidence tells it from that.
 fn is_of_most_runs(survey: &Survey, rival: &Settled) -> bool {
     rival.fit.extensions.last().is_some_and(|newest| {
-        newest.effect.scope == Scope::Run && 2 * newest.slots.len() > survey.runs.len()
+        newest.effect.scope.is_of_each_run() && 2 * newest.slots.len() > survey.runs.len()
     })
 }
 

@@ -71,7 +71,7 @@ fn known(observation: &Observation, model: &ModelFile) -> Vec<Extension> {
         let set = match effect.scope {
             Scope::Campaign => known.sets.first()?,
             Scope::Condition => known.sets.get(condition?)?,
-            Scope::Run => return None,
+            Scope::Run | Scope::OddRun => return None,
         };
         let acts = !matches!(effect.acts, Acts::Record(_)) && (effect.shows)(&observation.at);
         acts.then(|| Extension {

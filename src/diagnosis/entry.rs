@@ -6,11 +6,11 @@ use super::leftover::Leftover;
 use super::settle::Settled;
 use super::survey::Survey;
 use super::trial::Tried;
-use crate::model::{Scope, effects};
+use crate::model::effects;
 
 /// Least logarithm of a Bayes factor at which an effect may enter beside another: no form fits the
 /// first to the last digit.
-const ENTERS_BESIDE: f64 = 12.0;
+pub(super) const ENTERS_BESIDE: f64 = 12.0;
 /// Share of what is left for sure that an effect must take away to enter.
 const ENOUGH: f64 = 0.2;
 /// Share of what an approximate effect removes that it may leave of itself: no other effect.
@@ -87,7 +87,7 @@ fn prefer_the_part(tried: &mut [Tried]) {
 /// takes nothing from what each of them leaves, and is no crumb of that.
 fn is_crumb_of(known: &Entered, newest: &Entered, settled: &Settled) -> bool {
     let is_of_each_run =
-        settled.fit.extensions.last().is_some_and(|extension| extension.effect.scope == Scope::Run);
+        settled.fit.extensions.last().is_some_and(|one| one.effect.scope.is_of_each_run());
     let is_little = newest.log_bayes_factor < CRUMB_OF_EVIDENCE * known.log_bayes_factor;
     let share = if is_of_each_run { CRUMB_OF_EACH_RUN } else { CRUMB };
     let is_of_form = is_approximate(known.id)

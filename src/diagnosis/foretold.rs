@@ -57,7 +57,7 @@ pub(super) fn with_run(survey: &Survey, fit: &Fit, run: &Observation, state: Run
         let slot = match extension.effect.scope {
             Scope::Campaign => Some(0),
             Scope::Condition => Some(survey.condition_of[0]),
-            Scope::Run => None,
+            Scope::Run | Scope::OddRun => None,
         };
         extension.slot_of.push(slot.filter(|_| (extension.effect.shows)(&run.at)));
     }
@@ -70,7 +70,7 @@ pub(super) fn with_run(survey: &Survey, fit: &Fit, run: &Observation, state: Run
 fn with_own_set(fit: Fit, run: &Observation) -> Vec<Fit> {
     let Some(newest) = fit.extensions.last() else { return vec![fit] };
     let effect = newest.effect;
-    if effect.scope != Scope::Run || !(effect.shows)(&run.at) {
+    if !effect.scope.is_of_each_run() || !(effect.shows)(&run.at) {
         return vec![fit];
     }
     let started = |shape: Vec<f64>| {

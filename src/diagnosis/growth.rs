@@ -5,7 +5,7 @@ use super::backward::{check_backward, instead};
 use super::entry::{Best, CRUMB_OF_EVIDENCE, best};
 use super::leftover::{self, Leftover};
 use super::run_fit::ChannelNoise;
-use super::score::{Scored, score};
+use super::score::{Scored, score_all_but};
 use super::settle::{Settled, settle};
 use super::survey::{Fit, Survey};
 use super::trial::{Tried, fit_all, is_newest_plausible, is_plausible};
@@ -17,6 +17,8 @@ pub(super) const ENTERS: f64 = 7.0;
 const MOST: usize = 5;
 /// Times that a model is settled anew with the noise that it left.
 const MOST_STARTS: usize = 6;
+/// Effects with impossible numbers that are passed over in one step, so that others come up.
+const MOST_PASSED_OVER: usize = 4;
 /// Effects that are fitted in full at each step.
 const FITTED: usize = 8;
 
@@ -85,7 +87,10 @@ pub(super) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
         start = Growing { current, noise, entered };
         beside.ranking = ranking;
     }
-    let mut grown = climb(survey, start, None, &mut beside);
+    let mut grown = climb(survey, start, &[], &mut beside);
+    if let Some((other, found)) = in_another_reading(survey, &base, &grown) {
+        (grown, beside) = (other, found);
+    }
     if grown.entered.len() > 1 && !survey.is_spent() {
         if let Some(other) = without_the_first(survey, &base, &grown) {
             grown = other;
@@ -110,15 +115,18 @@ pub(super) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
     Grown { base, last, noise, entered, ranking, implausible, is_unnamed }
 }
 
-/// Lets effects enter one by one, all but one that is banned, until nothing more is to be named.
-fn climb(survey: &Survey, start: Growing, banned: Option<&str>, beside: &mut Beside) -> Growing {
+/// Lets effects enter one by one, all but those that are banned, until nothing more is to be named.
+fn climb(survey: &Survey, start: Growing, banned: &[&'static str], beside: &mut Beside) -> Growing {
     let mut now = start;
+    let mut passed_over = banned.to_vec();
     // Where a law of no known cause did best, and what the model was before.
     let mut unnamed: Option<(Fit, Growing)> = None;
     while now.entered.len() < MOST && !survey.is_spent() {
-        let Some(step) = step(survey, &now.current, &now.noise, &now.entered, banned) else {
+        let Some(step) = step(survey, &now.current, &now.noise, &now.entered, &passed_over) else {
             break;
         };
+        // One that explains most with impossible numbers must not hide the others.
+        let wild: Vec<&'static str> = step.implausible.iter().map(|(id, _)| *id).collect();
         if now.entered.is_empty() {
             beside.ranking.clone_from(&step.ranking);
         }
@@ -130,6 +138,7 @@ fn climb(survey: &Survey, start: Growing, banned: Option<&str>, beside: &mut Bes
             Best::Enters(settled, newest) => {
                 now.current = settled;
                 now.entered.push(newest);
+                passed_over = banned.to_vec();
             }
             Best::IsCrumb(settled, newest) => {
                 let Some(other) = instead(survey, settled, &now.entered, newest, &step.noise)
@@ -141,6 +150,12 @@ fn climb(survey: &Survey, start: Growing, banned: Option<&str>, beside: &mut Bes
             Best::ExplainsTooLittle => {
                 beside.is_unnamed |= now.entered.is_empty();
                 break;
+            }
+            Best::None
+                if !wild.is_empty() && passed_over.len() < banned.len() + MOST_PASSED_OVER =>
+            {
+                passed_over.extend(wild);
+                continue;
             }
             Best::None => break,
         }
@@ -158,12 +173,32 @@ fn climb(survey: &Survey, start: Growing, banned: Option<&str>, beside: &mut Bes
     now
 }
 
+/// What grows where an effect is read as its twin, and what is found beside it: these are one until
+/// another effect turns up that tells them apart, as a damping that depends on the true angle does.
+fn in_another_reading(
+    survey: &Survey,
+    base: &Growing,
+    grown: &Growing,
+) -> Option<(Growing, Beside)> {
+    let has_twin = |id: &str| effects::effect(id).is_some_and(|e| !e.always_equivalent.is_empty());
+    let twin = grown.entered.iter().find(|one| has_twin(one.id))?;
+    let is_alone = grown.entered.len() == 1;
+    let is_left = || leftovers(survey, &grown.current.fit).iter().any(|left| left.is_structure());
+    if survey.is_spent() || (is_alone && !is_left()) {
+        return None;
+    }
+    let mut beside = Beside::default();
+    let other = climb(survey, base.clone(), &[twin.id], &mut beside);
+    let log = |of: &Growing| settle(survey, of.current.fit.clone(), &grown.noise).log_evidence;
+    (!other.entered.is_empty() && log(&other) > log(grown) + 0.5 * SAME).then_some((other, beside))
+}
+
 /// What grows without the first effect of a model, where that is one that stands for many and
 /// others, none of which is such a one, do better than all that grew on it.
 fn without_the_first(survey: &Survey, base: &Growing, grown: &Growing) -> Option<Growing> {
     let first = grown.entered.first().filter(|first| is_approximate(first.id))?;
     let mut beside = Beside::default();
-    let other = climb(survey, base.clone(), Some(first.id), &mut beside);
+    let other = climb(survey, base.clone(), &[first.id], &mut beside);
     let is_exact = !other.entered.iter().any(|one| is_approximate(one.id));
     if beside.is_unnamed || other.entered.is_empty() || !is_exact {
         return None;
@@ -210,12 +245,9 @@ fn step(
     before: &Settled,
     noise: &[ChannelNoise],
     entered: &[Entered],
-    banned: Option<&str>,
+    banned: &[&str],
 ) -> Option<Step> {
-    let scored = |fit: &Fit, noise: &[ChannelNoise]| -> Vec<Scored> {
-        let is_free = |one: &Scored| Some(one.extension.effect.id) != banned;
-        score(survey, fit, noise).into_iter().filter(is_free).collect()
-    };
+    let scored = |fit: &Fit, noise: &[ChannelNoise]| score_all_but(banned, survey, fit, noise);
     let scores = scored(&before.fit, noise);
     let mut ranking: Vec<(&'static str, f64)> =
         scores.iter().map(|s| (s.extension.effect.id, s.log_bayes_factor)).collect();

@@ -25,6 +25,7 @@ mod over_scatters;
 mod partial;
 mod plan;
 mod records;
+mod repeating;
 mod reversed;
 mod run_fit;
 mod scatter;

@@ -2,6 +2,7 @@
 
 use super::clipping::middle;
 use super::facts;
+use super::repeating;
 use crate::campaign::Campaign;
 use crate::inverse::forced::response::SteadyResponse;
 use crate::inverse::record::Record;
@@ -56,6 +57,9 @@ impl Observation {
     /// # Errors
     /// The reason, as a sentence, why the run takes no part.
     pub fn new(run: &IdentifiedRun, campaign: &Campaign, order: usize) -> Result<Self, String> {
+        if let Some(repeating) = repeating::with_frequency(&run.run) {
+            return Self::forced(&IdentifiedRun { run: repeating, ..run.clone() }, campaign, order);
+        }
         match run.run.kind {
             RunKind::Decay => Self::decay(run, campaign, order),
             RunKind::Forced => Self::forced(run, campaign, order),

@@ -7,6 +7,9 @@ use super::leftover::Leftover;
 /// campaigns, of whose catalogued effects it takes only free surfaces from their names.
 const MOST_LEFT: f64 = 0.1;
 
+/// Share of the motion of a channel beyond which nothing is explained, whatever was left before [-].
+const MOST_OF_MOTION: f64 = 0.2;
+
 /// Whether causes leave too much of what they found: of what was left in the band of the roll, or
 /// of all that they took away, be it a ringing far above it.
 pub(super) fn is_part(before: &[Leftover], after: &[Leftover], untold: &[Leftover]) -> bool {
@@ -14,7 +17,10 @@ pub(super) fn is_part(before: &[Leftover], after: &[Leftover], untold: &[Leftove
         (before.rms.powi(2) - after.rms.powi(2)) / before.motion_rms.powi(2).max(1e-30)
     });
     let found = sure_share(before).max(taken.sum());
-    untold.iter().any(Leftover::is_sure) && sure_share(untold) > MOST_LEFT * found
+    let mut sure = untold.iter().filter(|left| left.is_sure()).peekable();
+    let is_sure = sure.peek().is_some();
+    let is_most = sure.any(|left| left.share > MOST_OF_MOTION);
+    is_most || (is_sure && sure_share(untold) > MOST_LEFT * found)
 }
 
 /// How many of the last effects are only a part of what they found, the first excepted: under all

@@ -17,8 +17,9 @@ pub(super) struct Scored {
     pub(super) extension: Extension,
 }
 
-/// What is tried on a model: effects and laws that some run shows and that are not in it.
-fn tried(survey: &Survey, fit: &Fit) -> Vec<&'static Effect> {
+/// What is tried on a model: effects and laws that some run shows, that are not in it and not
+/// banned.
+fn tried(survey: &Survey, fit: &Fit, banned: &[&str]) -> Vec<&'static Effect> {
     let known = |id: &str| fit.extensions.iter().any(|e| e.effect.id == id);
     let mut kept: Vec<&'static Effect> = Vec::new();
     for effect in effects::weighed() {
@@ -28,10 +29,13 @@ fn tried(survey: &Survey, fit: &Fit) -> Vec<&'static Effect> {
             .iter()
             .any(|id| known(id) || kept.iter().any(|kept| kept.id == *id));
         // The reading of a twin is the one that disturbs no equation.
-        let stands_back =
-            !effect.always_equivalent.is_empty() && !matches!(effect.acts, Acts::Roll(_));
+        let twins = effect.always_equivalent;
+        let stands_back = !twins.is_empty()
+            && !matches!(effect.acts, Acts::Roll(_))
+            && !twins.iter().any(|id| banned.contains(id));
         let seen = matches!(effect.acts, Acts::Record(_));
-        if shown && !twin && !stands_back && !seen && !known(effect.id) {
+        let is_free = !banned.contains(&effect.id) && !known(effect.id);
+        if shown && !twin && !stands_back && !seen && is_free {
             kept.push(effect);
         }
     }
@@ -68,9 +72,19 @@ const RUNAWAY: f64 = 1e12;
 
 /// Scores every effect that is not in the model yet, best first.
 pub(super) fn score(survey: &Survey, fit: &Fit, noise: &[ChannelNoise]) -> Vec<Scored> {
-    let tried = tried(survey, fit);
+    score_all_but(&[], survey, fit, noise)
+}
+
+/// The same without those that are banned, whose twins are tried in their place.
+pub(super) fn score_all_but(
+    banned: &[&str],
+    survey: &Survey,
+    fit: &Fit,
+    noise: &[ChannelNoise],
+) -> Vec<Scored> {
+    let tried = tried(survey, fit, banned);
     let (own, common): (Vec<_>, Vec<_>) =
-        tried.into_iter().partition(|effect| effect.scope == Scope::Run);
+        tried.into_iter().partition(|effect| effect.scope.is_of_each_run());
     let largest = (0..survey.runs.len())
         .max_by(|a, b| {
             survey.runs[*a].at.amplitude_rad.total_cmp(&survey.runs[*b].at.amplitude_rad)
@@ -230,7 +244,21 @@ fn common_scores(
     scored
 }
 
-/// Effects that each run has of its own: any run may have it or not.
+/// What an effect of one run's own promises there.
+struct Own {
+    run: usize,
+    /// Place of its best shape among the candidates of the run.
+    best: usize,
+    /// Logarithm of the Bayes factor under each scatter.
+    per_scatter: Vec<f64>,
+    /// The same over all scatters.
+    log: f64,
+}
+
+/// Logarithm of the Bayes factor of a run's own effect from which the run has it.
+const HAS_IT: f64 = 1.0;
+
+/// Effects that each run has of its own: any run may have it or not, of some only few.
 fn own_scores(
     survey: &Survey,
     own: &[Vec<Candidate>],
@@ -239,45 +267,52 @@ fn own_scores(
     base_logs: &[f64],
     none: f64,
 ) -> Vec<Scored> {
-    let mut ids: Vec<&'static str> = Vec::new();
+    let mut effects: Vec<&'static Effect> = Vec::new();
     for candidate in own.iter().flatten() {
-        if !ids.contains(&candidate.effect.id) {
-            ids.push(candidate.effect.id);
+        if !effects.iter().any(|known| known.id == candidate.effect.id) {
+            effects.push(candidate.effect);
         }
     }
+    let of_run = |effect: &Effect, run: usize| -> Option<Own> {
+        let nodes: Vec<usize> = (0..own[run].len())
+            .filter(|c| own[run][*c].effect.id == effect.id && !strengths[run][*c].1.is_empty())
+            .collect();
+        let place = |c: &usize| strengths[run][*c].0;
+        let best = nodes.iter().copied().max_by(|a, b| place(a).total_cmp(&place(b)))?;
+        let per_scatter: Vec<f64> = (0..base_logs.len())
+            .map(|h| log_mean_exp(&nodes.iter().map(|c| logs[run][*c][h]).collect::<Vec<_>>()))
+            .collect();
+        let weighted: Vec<f64> =
+            per_scatter.iter().zip(base_logs).map(|(log, base)| log + base).collect();
+        Some(Own { run, best, log: log_mean_exp(&weighted) - none, per_scatter })
+    };
     let mut scored = Vec::new();
-    for id in ids {
+    for effect in effects {
+        let mut runs: Vec<Own> =
+            (0..survey.runs.len()).filter_map(|run| of_run(effect, run)).collect();
+        let most = effect.scope.most_runs(survey.runs.len());
+        if runs.len() > most {
+            runs.sort_by(|a, b| b.log.total_cmp(&a.log));
+            runs.truncate(most);
+            runs.sort_by_key(|one| one.run);
+        }
         let mut totals = base_logs.to_vec();
         let mut slots: Vec<Option<usize>> = vec![None; survey.runs.len()];
         let mut chosen: Option<Extension> = None;
-        for r in 0..survey.runs.len() {
-            let nodes: Vec<usize> = (0..own[r].len())
-                .filter(|c| own[r][*c].effect.id == id && !strengths[r][*c].1.is_empty())
-                .collect();
-            let Some(best) = nodes
-                .iter()
-                .copied()
-                .max_by(|a, b| strengths[r][*a].0.total_cmp(&strengths[r][*b].0))
-            else {
-                continue;
-            };
-            let per_scatter: Vec<f64> = (0..base_logs.len())
-                .map(|h| log_mean_exp(&nodes.iter().map(|c| logs[r][*c][h]).collect::<Vec<_>>()))
-                .collect();
+        for Own { run, best, per_scatter, log } in runs {
             // One run in two may have it, whatever the others have.
             for (total, log) in totals.iter_mut().zip(&per_scatter) {
                 *total += log_mean_exp(&[0.0, *log]);
             }
-            let weighted: Vec<f64> =
-                per_scatter.iter().zip(base_logs).map(|(log, base)| log + base).collect();
-            if log_mean_exp(&weighted) - none > 1.0 {
-                let one = extension(survey, &own[r][best], &strengths[r][best].1, slots.clone());
+            if log > HAS_IT {
+                let (candidate, strengths) = (&own[run][best], &strengths[run][best].1);
+                let one = extension(survey, candidate, strengths, slots.clone());
                 let whole = chosen.get_or_insert_with(|| Extension {
                     slots: Vec::new(),
                     centres: Vec::new(),
                     ..one.clone()
                 });
-                slots[r] = Some(whole.slots.len());
+                slots[run] = Some(whole.slots.len());
                 whole.slots.extend(one.slots);
                 whole.centres.extend(one.centres);
             }

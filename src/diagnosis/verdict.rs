@@ -1,5 +1,6 @@
 //! What is told of a campaign: verdict, causes in order of entry, gain, bias, what is left.
 
+use super::entry::ENTERS_BESIDE;
 use super::gain::{self, HeldOut};
 use super::growth::{Grown, leftovers};
 use super::layout::Layout;
@@ -140,7 +141,10 @@ pub(super) fn told(
     let parts = causes.split_off(causes.len() - n_parts(&grown.entered, &untold_left));
     let mut suspects: Vec<&'static str> = parts.iter().map(|part| part.effect).collect();
     let is_part = is_part(&left_before, &left_after, &untold_left);
-    let untold = is_part || grown.is_unnamed;
+    // What only impossible numbers explain is there all the same.
+    let wild = grown.implausible.iter().map(|(_, log)| *log).fold(0.0, f64::max);
+    let is_wild = causes.is_empty() && wild > ENTERS_BESIDE;
+    let untold = is_part || is_wild || grown.is_unnamed;
     if untold {
         suspects.splice(0..0, causes.drain(..).map(|cause| cause.effect));
     }

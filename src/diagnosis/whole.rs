@@ -37,11 +37,11 @@ pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
     let survey = Survey::new(runs);
     let mut grown = grow(&survey, None);
     let mut together = tell(&survey, &grown);
-    if together.verdict == Verdict::Unexplained {
+    if left(&together) > 0.0 {
         for stem in of_one_kind.stems(&survey) {
             let other = grow(&survey, Some(stem));
             let diagnosis = tell(&survey, &other);
-            if diagnosis.verdict != Verdict::Unexplained {
+            if left(&diagnosis) < LESS * left(&together) {
                 (grown, together) = (other, diagnosis);
                 break;
             }
@@ -50,6 +50,19 @@ pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
     let explained =
         if whole.is_empty() { None } else { explained(whole, &survey, &grown, &of_one_kind, tell) };
     Some(explained.unwrap_or(together))
+}
+
+/// Share of what one diagnosis leaves that a better one may.
+const LESS: f64 = 0.5;
+
+/// What a diagnosis leaves for sure, as a share of the motion; nothing counts as explained by one
+/// that says that it does not explain the runs.
+fn left(diagnosis: &Diagnosis) -> f64 {
+    if diagnosis.verdict == Verdict::Unexplained {
+        return f64::INFINITY;
+    }
+    let sure = diagnosis.left_after.iter().filter(|left| left.is_sure());
+    sure.map(|left| left.share).sum()
 }
 
 /// The diagnosis with what the model did after its decays, where that explains it: from what the

@@ -68,6 +68,26 @@ pub enum Scope {
     Condition,
     /// Each run has its own.
     Run,
+    /// The same, and few runs have any.
+    OddRun,
+}
+
+/// Runs of which one may have what few have.
+const RUNS_OF_ONE_ODD: usize = 10;
+
+impl Scope {
+    /// Whether each run has its own set.
+    pub fn is_of_each_run(self) -> bool {
+        matches!(self, Self::Run | Self::OddRun)
+    }
+
+    /// How many runs of `n_runs` may have a set of their own.
+    pub fn most_runs(self, n_runs: usize) -> usize {
+        match self {
+            Self::OddRun => (n_runs / RUNS_OF_ONE_ODD).max(1),
+            _ => n_runs,
+        }
+    }
 }
 
 /// Where and when a run was made.

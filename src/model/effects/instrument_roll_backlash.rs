@@ -20,11 +20,18 @@ pub(super) const EFFECT: Effect = Effect {
     reference: "python-control: friction and backlash",
 };
 
-/// The reading stays until the angle has crossed the play; it starts in contact.
+/// Rate as a share of that of a roll through its rest, from which the play behind it is crossed.
+const MOVING: f64 = 0.3;
+
+/// The reading stays until the angle has crossed the play; it starts in contact, behind a model
+/// that moves, and as heeling left it behind one that is held.
 fn play<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
     let half = p[0];
     let Some(first) = all.first() else { return Vec::new() };
-    let mut reading = first.roll_rad - half * first.roll_rad.value().signum();
+    let (roll, rate) = (first.roll_rad.value(), first.rate_rad_per_s.value());
+    let moves = rate.abs() > MOVING * first.run.natural_rad_s * roll.abs();
+    let ahead = if moves { rate } else { roll };
+    let mut reading = first.roll_rad - half * ahead.signum();
     let mut lost = Vec::with_capacity(all.len());
     for i in all {
         let (low, high) = (i.roll_rad - half.abs(), i.roll_rad + half.abs());

@@ -17,7 +17,7 @@ pub(super) const EFFECT: Effect = Effect {
     ],
     shapes: &[],
     nodes: one_node,
-    scope: Scope::Run,
+    scope: Scope::OddRun,
     shows: |run| run.n_runs >= 4,
     acts: Acts::Moment(Law { plain: law, sloped: law }),
     always_equivalent: &[],
