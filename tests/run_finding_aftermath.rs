@@ -1,4 +1,4 @@
-//! What a model does after a decay is followed until it lies still or somebody touches it.
+//! What a model does after a decay is followed until somebody touches it or a minute is over.
 
 use devices::{Quantity, Sample};
 
@@ -57,6 +57,25 @@ fn a_release_of_which_too_little_decays_is_followed_from_the_release() {
 fn nothing_comes_after_a_decay_that_is_lost_in_the_noise() {
     let found = found(12.0, 60.0, |t| 12.0 * (-0.2 * t).exp() * (5.5 * t).cos());
     assert_eq!((found.runs.len(), found.aftermaths.len()), (1, 0), "{:?}", found.aftermaths);
+}
+
+#[test]
+fn waves_that_come_back_after_a_rest_are_followed_and_a_model_held_at_heel_is_not() {
+    let decay = |t: f64| 12.0 * (-0.8 * t).exp() * (5.5 * t).cos();
+    let back = |t: f64| 1.2 * (-((t - 18.0) / 2.5).powi(2)).exp() * (5.5 * t).cos();
+    let rested = found(12.0, 40.0, |t| decay(t) + back(t));
+    let [after] = &rested.aftermaths[..] else { panic!("{:?}", rested.aftermaths) };
+    assert_eq!(after.run_end_s, Some(rested.runs[0].end_s));
+    let (from_s, to_s) = (after.roll.time_s[0], after.roll.time_s[after.roll.time_s.len() - 1]);
+    assert!(from_s < 15.0 && to_s > 27.0, "from {from_s:.1} s to {to_s:.1} s");
+    // A hand heels the model within the minute, holds it there, and stirs it before it lets go.
+    let held = found(12.0, 40.0, |t| match t {
+        ..14.0 => decay(t),
+        14.0..17.0 => 3.0 * (t - 14.0),
+        17.0..25.0 => 9.0,
+        _ => 9.0 + 0.8 * (5.5 * t).sin(),
+    });
+    assert!(held.aftermaths.is_empty(), "{:?}", held.aftermaths.len());
 }
 
 #[test]

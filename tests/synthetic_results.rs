@@ -186,8 +186,7 @@ fn identified(
 
 /// The run as the finder would hand it over.
 fn found(truth: &Truth, froude: f64, roll: Series, moment_n_m: &[f64]) -> Run {
-    let forced = truth.forced();
-    let force = Some(0.02);
+    let (forced, force) = (truth.forced(), Some(0.02));
     let still = Still { start_s: 4.0, end_s: 20.9, roll_rad: 0.001, roll_sd_rad: 0.0, force };
     let n = if forced { moment_n_m.len() } else { 0 };
     let force_n = moment_n_m[..n].iter().map(|moment| moment / 0.43).collect();

@@ -9,7 +9,7 @@ use super::campaign_folder::rolltank;
 use super::hidden_tank::base::Base;
 use super::hidden_tank::campaign::{Asked, Campaign, SCATTER};
 use super::hidden_tank::effects::{CATALOGUED, INVENTED};
-use super::hidden_tank::fit::misfit;
+use super::hidden_tank::fit::{misfit, misfit_beside};
 use super::hidden_tank::folder::{play, truth};
 use super::hidden_tank::integrate::{State, step};
 use super::hidden_tank::motion::simulate;
@@ -116,6 +116,15 @@ fn cubic_restoring_and_amplitude_inertia_are_one_class_in_decays() {
     let alone = misfit(&hidden, &hidden.effects, None);
     let left = misfit(&hidden, &hidden.effects, Some(&beside.effects[0]));
     assert!(alone > 1000.0 && left < 12.0, "{left} of {alone} is left");
+}
+
+#[test]
+fn what_one_hidden_effect_takes_up_is_not_left_of_the_other() {
+    let hidden = ["restoring.cubic", "inertia.amplitude"];
+    let both = Campaign::draw(&asked(RunSet::Rest, &hidden, 1.0, 0));
+    let alone = misfit(&both, &both.effects[1..], None);
+    let beside = misfit_beside(&both, &both.effects[0]);
+    assert!(alone > 1000.0 && beside < 12.0, "{beside} of {alone} is left");
 }
 
 #[test]

@@ -35,7 +35,7 @@ pub(super) fn check_backward(
             continue;
         }
         // A rest that does not settle judges nothing: what was told when it entered stays.
-        if without.promised > SAME {
+        if !missed.is_finite() || without.promised > SAME {
             e += 1;
             continue;
         }

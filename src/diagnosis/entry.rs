@@ -6,7 +6,7 @@ use super::leftover::Leftover;
 use super::settle::Settled;
 use super::survey::Survey;
 use super::trial::Tried;
-use crate::model::effects;
+use crate::model::{Scope, effects};
 
 /// Least logarithm of a Bayes factor at which an effect may enter beside another: no form fits the
 /// first to the last digit.
@@ -87,7 +87,7 @@ fn prefer_the_part(tried: &mut [Tried]) {
 /// takes nothing from what each of them leaves, and is no crumb of that.
 fn is_crumb_of(known: &Entered, newest: &Entered, settled: &Settled) -> bool {
     let is_of_each_run =
-        settled.fit.extensions.last().is_some_and(|one| one.effect.scope.is_of_each_run());
+        settled.fit.extensions.last().is_some_and(|one| one.effect.scope == Scope::Run);
     let is_little = newest.log_bayes_factor < CRUMB_OF_EVIDENCE * known.log_bayes_factor;
     let share = if is_of_each_run { CRUMB_OF_EACH_RUN } else { CRUMB };
     let is_of_form = is_approximate(known.id)

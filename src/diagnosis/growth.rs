@@ -183,7 +183,7 @@ fn in_another_reading(
     let has_twin = |id: &str| effects::effect(id).is_some_and(|e| !e.always_equivalent.is_empty());
     let twin = grown.entered.iter().find(|one| has_twin(one.id))?;
     let is_alone = grown.entered.len() == 1;
-    let is_left = || leftovers(survey, &grown.current.fit).iter().any(|left| left.is_structure());
+    let is_left = || leftovers(survey, &grown.current.fit).iter().any(Leftover::is_structure);
     if survey.is_spent() || (is_alone && !is_left()) {
         return None;
     }

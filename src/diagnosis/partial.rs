@@ -7,7 +7,7 @@ use super::leftover::Leftover;
 /// campaigns, of whose catalogued effects it takes only free surfaces from their names.
 const MOST_LEFT: f64 = 0.1;
 
-/// Share of the motion of a channel beyond which nothing is explained, whatever was left before [-].
+/// Share of the motion of a channel beyond which nothing is explained, whatever was left [-].
 const MOST_OF_MOTION: f64 = 0.2;
 
 /// Whether causes leave too much of what they found: of what was left in the band of the roll, or

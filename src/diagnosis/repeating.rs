@@ -1,4 +1,4 @@
-//! The frequency of a roll that repeats, where the run finder saw none in a force that still settles.
+//! The frequency of a roll that repeats, where the force still settled and told none.
 
 use crate::inverse::forced::harmonic::FourierSeries;
 use crate::run::{Run, RunKind};

@@ -24,8 +24,8 @@ pub(super) struct ChannelNoise {
 /// The numbers of one run.
 #[derive(Debug, Clone)]
 pub(super) struct RunState {
-    /// Initial state or course, the run's own offset, then what heeling the model stirred, as far as
-    /// it is known.
+    /// Initial state or course, the run's own offset, then what heeling the model stirred, as far
+    /// as it is known.
     pub(super) own: Vec<f64>,
     /// Base equation.
     pub(super) base: Base,
@@ -193,7 +193,7 @@ pub(super) fn summarise(
 const OFFSET_OF_DECAY: usize = 2;
 /// What heeling the model may leave of states that it stirs, as a share of its amplitude, where
 /// nobody knows how it was heeled, and beyond what is known of it.
-const STIRRED: [f64; 2] = [0.3, 0.003];
+const STIRRED: [f64; 2] = [0.3, 0.01];
 
 /// Place of a run's offset among its own numbers.
 fn offset_place(run: &Observation) -> usize {

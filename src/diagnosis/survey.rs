@@ -119,7 +119,9 @@ impl Survey {
         let n_clipped = runs.iter().filter(is_clipped).count();
         let n_within = runs.iter().filter(is_clipped).filter(|run| run.is_below(largest_rad));
         if 2 * n_within.count() > n_clipped {
-            runs.iter_mut().for_each(|run| run.facts.clip = None);
+            for run in &mut runs {
+                run.facts.clip = None;
+            }
         }
         let read = |run: &mut Observation| run.read_within(largest_rad);
         let is_enough: Vec<bool> = runs.iter_mut().map(read).collect();
@@ -162,15 +164,15 @@ impl Survey {
             Some(fit.laws[known])
         };
         let laws: Vec<Law> = self.conditions.iter().map(law).collect::<Option<_>>()?;
-        let state = |run: usize| match places[run] {
-            Some(place) => fit.states[place].clone(),
-            None => {
-                let observation = &self.runs[run];
-                let law = laws[self.condition_of[run]].at(observation.at.froude);
-                let [natural_rad_s, b1_per_s, b3_s] = law;
-                let base = Base { natural_rad_s, b1_per_s, b3_s, log_scale: fit.log_scale };
-                RunState { own: observation.start.clone(), base }
+        let state = |run: usize| {
+            if let Some(place) = places[run] {
+                return fit.states[place].clone();
             }
+            let observation = &self.runs[run];
+            let law = laws[self.condition_of[run]].at(observation.at.froude);
+            let [natural_rad_s, b1_per_s, b3_s] = law;
+            let base = Base { natural_rad_s, b1_per_s, b3_s, log_scale: fit.log_scale };
+            RunState { own: observation.start.clone(), base }
         };
         let extensions = fit.extensions.iter().map(|one| one.of_runs(self, other, &places));
         Some(Fit {

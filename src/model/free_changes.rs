@@ -80,12 +80,12 @@ impl<const N: usize> Changes<N> {
         let begun = begun(decay, n_forced);
         let started = (0..N_START).chain(decay.stirred_places()).collect();
         Self {
-            started,
-            begun,
             step_s,
             jacobians,
             transitions,
+            started,
             n_forced,
+            begun,
             forcing,
             echoes,
             candidates,
@@ -120,8 +120,8 @@ impl<const N: usize> Changes<N> {
         if own < self.n_forced {
             let at = |k: usize| self.forcing[k * self.n_forced + own];
             let begun = self.begun[own];
-            let moves = begun != still
-                || (0..self.jacobians.len()).any(|k| at(k).iter().any(|f| *f != 0.0));
+            let is_moved = |of: &[f64; N]| of.iter().any(|f| *f != 0.0);
+            let moves = is_moved(&begun) || (0..self.jacobians.len()).any(|k| is_moved(&at(k)));
             if moves {
                 self.respond(begun, at, change);
             }

@@ -209,6 +209,24 @@ mod tests {
     }
 
     #[test]
+    fn a_steady_speed_is_known_where_it_was_last_steady_and_a_changing_one_later() {
+        let mut carriage = CarriagePass::default();
+        let told = |carriage: &mut CarriagePass, from_s: f64, to_s: f64| {
+            for k in (from_s * 50.0) as usize..(to_s * 50.0) as usize {
+                let t = k as f64 * 0.02;
+                carriage.push(t, (0.5 * (t - 3.0)).min(0.5 * (22.0 - t)).clamp(0.0, 1.0));
+            }
+        };
+        told(&mut carriage, 0.0, 12.0);
+        assert!(carriage.is_known(11.8) && !carriage.is_known(12.1));
+        told(&mut carriage, 12.0, 20.5);
+        // It has begun to brake: until then it was steady, and from then on nobody knows yet.
+        assert!(carriage.is_known(19.9) && !carriage.is_known(20.3));
+        assert_eq!(carriage.passage(6.0, 19.9), Passage::Steady);
+        assert!(CarriagePass::default().is_known(5.0));
+    }
+
+    #[test]
     fn a_speed_that_settles_and_wobbles_is_steady() {
         let mut carriage = CarriagePass::default();
         for k in 0..2000 {

@@ -16,10 +16,19 @@ pub(crate) fn hidden(outcome: &Value) -> Vec<&str> {
     outcome["hidden"].as_array().into_iter().flatten().filter_map(Value::as_str).collect()
 }
 
-/// The least misfit of what hides in it; nothing for a clean campaign.
+/// The least misfit of what hides in it, each effect alone; nothing for a clean campaign.
 pub(crate) fn lambda(outcome: &Value) -> f64 {
-    let all = outcome["lambda"].as_array().into_iter().flatten().filter_map(Value::as_f64);
-    let least = all.fold(f64::INFINITY, f64::min);
+    least(outcome, &["lambda"])
+}
+
+/// The least misfit of what hides in it, alone and beside the other that hides.
+pub(crate) fn lambda_beside(outcome: &Value) -> f64 {
+    least(outcome, &["lambda", "lambda_beside"])
+}
+
+fn least(outcome: &Value, keys: &[&str]) -> f64 {
+    let all = keys.iter().filter_map(|key| outcome[*key].as_array()).flatten();
+    let least = all.filter_map(Value::as_f64).fold(f64::INFINITY, f64::min);
     if least.is_finite() { least } else { 0.0 }
 }
 

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::coverage::covered;
 use crate::hidden_tank::campaign::{Asked, Campaign};
 use crate::hidden_tank::effects::labels::MISLABELLED;
-use crate::hidden_tank::fit::{INDISTINGUISHABLE, left_by, misfit};
+use crate::hidden_tank::fit::{INDISTINGUISHABLE, left_by, misfit, misfit_beside};
 use crate::hidden_tank::folder::play;
 use crate::hidden_tank::next_run::towed;
 use crate::hidden_tank::plan::Pass;
@@ -36,17 +36,36 @@ pub(crate) fn lambdas(campaign: &Campaign) -> Vec<f64> {
     alone.map(|lambda| (lambda * 10.0).round() / 10.0).collect()
 }
 
+/// What the base with one of two hidden effects cannot take up of the other; nothing of one alone.
+fn lambdas_beside(campaign: &Campaign) -> Vec<f64> {
+    let [one, other] = &campaign.effects[..] else { return Vec::new() };
+    let well_labelled = Campaign {
+        passes: campaign.passes.iter().map(Pass::well_labelled).collect(),
+        ..campaign.clone()
+    };
+    let beside = [(one, other), (other, one)].map(|(effect, known)| {
+        if known.row.id == MISLABELLED.id {
+            misfit(&well_labelled, std::slice::from_ref(effect), None)
+        } else {
+            misfit_beside(campaign, known)
+        }
+    });
+    beside.map(|lambda| (lambda * 10.0).round() / 10.0).to_vec()
+}
+
 /// Draws, plays, diagnoses and scores a campaign.
 pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
     let campaign = Campaign::draw(asked);
     let lambda = lambdas(&campaign);
+    let lambda_beside = lambdas_beside(&campaign);
     let place = tempfile::tempdir().expect("a place for a campaign");
     let played = play(&campaign, place.path());
     let (answer, seconds) = timed(|| diagnose(program, &played.folder));
     let mut line = json!({
         "name": asked.name(), "hidden": asked.hidden, "size": asked.size,
         "set": asked.set.name(), "seed": asked.seed, "scatter": asked.scatter,
-        "keels": campaign.keels, "lambda": lambda, "seconds": seconds,
+        "keels": campaign.keels, "lambda": lambda,
+        "lambda_beside": lambda_beside, "seconds": seconds,
         "noise_rmse_deg": noise_rmse_deg(&campaign),
     });
     let verdict = match answer {

@@ -43,8 +43,21 @@ struct Target {
     roll_sd: f64,
 }
 
+/// From a small effect on, either sign is near; as a change by share.
+const SMALL: f64 = -0.9;
+
 /// Misfit of the base to what hides in a campaign; `beside` may stand for it, from its values on.
 pub(crate) fn misfit(campaign: &Campaign, hidden: &[Effect], beside: Option<&Effect>) -> f64 {
+    least(campaign, hidden, beside, SMALL)
+}
+
+/// Misfit of the base with one of two hidden effects to both: what is left to find of the other.
+pub(crate) fn misfit_beside(campaign: &Campaign, known: &Effect) -> f64 {
+    least(campaign, &campaign.effects, Some(known), 0.0)
+}
+
+/// The least misfit near where the effect beside the base starts, as a change of its first value.
+fn least(campaign: &Campaign, hidden: &[Effect], beside: Option<&Effect>, start: f64) -> f64 {
     let targets: Vec<Target> =
         campaign.passes.iter().map(|pass| target(campaign, hidden, pass)).collect();
     let n_beside = beside.map_or(0, |effect| effect.values.len());
@@ -54,8 +67,7 @@ pub(crate) fn misfit(campaign: &Campaign, hidden: &[Effect], beside: Option<&Eff
     // The values of the effect beside are changes by share; three times either way is its range.
     priors.extend(vec![(0.0, 3.0); n_beside]);
     if n_beside > 0 {
-        // From a small effect on, either sign is near.
-        x[SHARED] = -0.9;
+        x[SHARED] = start;
     }
     for (index, target) in targets.iter().enumerate() {
         let at = SHARED + n_beside + OWN * index;

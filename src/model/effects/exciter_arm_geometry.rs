@@ -7,7 +7,7 @@ use crate::model::number::Number;
 pub(super) const EFFECT: Effect = Effect {
     id: "exciter.arm_geometry",
     layer: Layer::Exciter,
-    equation: "M (1 + s (1/cos(phi) - 1))",
+    equation: "M/(1 - s (1 - cos(phi)))",
     strengths: &[Parameter::new("s", "-", 1.0, [0.3, 2.5])],
     shapes: &[],
     nodes: one_node,
@@ -20,5 +20,6 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     let (_, cos) = i.roll_rad.sin_cos();
-    p[0] * i.moment_n_m * (N::from(1.0) / cos - 1.0)
+    let arm = N::from(1.0) - p[0] * (N::from(1.0) - cos);
+    i.moment_n_m * (N::from(1.0) / arm - 1.0)
 }

@@ -7,7 +7,7 @@ use crate::model::number::Number;
 pub(super) const EFFECT: Effect = Effect {
     id: "exciter.pin_height",
     layer: Layer::Exciter,
-    equation: "M (1 + (h/l) phi)",
+    equation: "M/(1 - (h/l) sin(phi))",
     strengths: &[Parameter::new("h/l", "-", 0.25, [-0.9, 0.9])],
     shapes: &[],
     nodes: one_node,
@@ -19,5 +19,6 @@ pub(super) const EFFECT: Effect = Effect {
 };
 
 fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
-    p[0] * i.moment_n_m * i.roll_rad
+    let (sin, _) = i.roll_rad.sin_cos();
+    i.moment_n_m * (N::from(1.0) / (N::from(1.0) - p[0] * sin) - 1.0)
 }

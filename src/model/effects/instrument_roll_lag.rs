@@ -24,7 +24,10 @@ pub(super) const EFFECT: Effect = Effect {
 fn lag<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
     let tau_s = p[0];
     let Some(first) = all.first() else { return Vec::new() };
-    let mut behind = -tau_s * first.rate_rad_per_s;
+    // The filter has long run: the series of what it lacks, the fourth derivative left out.
+    let third = first.rate_rad_per_s * -first.run.rolling_rad_s.powi(2);
+    let mut behind = tau_s * (tau_s * (first.acceleration_rad_per_s2 - tau_s * third))
+        - tau_s * first.rate_rad_per_s;
     let mut lost = vec![behind];
     for pair in all.windows(2) {
         let step_s = pair[1].time_s - pair[0].time_s;
