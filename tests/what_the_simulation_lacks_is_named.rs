@@ -8,7 +8,7 @@ use rolltank::diagnosis::{Diagnosis, Verdict};
 use rolltank::model::effects;
 use rolltank::model::model_file::ModelFile;
 use rolltank::pipeline::{self, Learnt, Observed, Options};
-use rolltank::report::{DIAGNOSIS_SCHEMA, diagnosis_json};
+use rolltank::report::{DIAGNOSIS_SCHEMA, diagnosis_json, diagnosis_text};
 use serde_json::Value;
 
 use super::campaign_folder::rolltank;
@@ -193,6 +193,23 @@ fn beside_its_class_the_measured_tanker_keeps_what_no_cause_explains() {
     let under_way = diagnosis.left_after.iter().find(|left| left.run.contains("21340"));
     let time_s = under_way.map_or(0.0, |left| left.time_s);
     assert!((23.0..27.0).contains(&time_s), "{time_s} s");
+}
+
+#[test]
+fn a_search_that_ended_early_says_so() {
+    let Some(mut diagnosis) = kvlcc2(0.0) else { return };
+    let told = |diagnosis: &Diagnosis| -> (Value, String) {
+        let document = serde_json::from_str(&diagnosis_json(Some(diagnosis))).expect("JSON");
+        (document, diagnosis_text(Some(diagnosis)))
+    };
+    let (document, text) = told(&diagnosis);
+    assert_eq!(document["cut_short"], false, "one decay is searched to the end");
+    assert!(!text.contains("ended at what it may cost"), "{text}");
+    diagnosis.cut_short = true;
+    let (document, text) = told(&diagnosis);
+    assert_eq!(json_schema::violations(&schema(), &document), Vec::<String>::new());
+    assert_eq!(document["cut_short"], true);
+    assert!(text.contains("ended at what it may cost"), "{text}");
 }
 
 /// Cubic restoring and the inertia that changes with the roll are one class in any decay.

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Exit, Failure};
+use super::{Exit, Failure, heap};
 use crate::campaign::{self, Campaign};
 use crate::model::model_file::ModelFile;
 use crate::pipeline::{self, Observed, Options};
@@ -26,6 +26,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
+    heap::go_on_with(heap::OF_A_SEARCH);
     let campaign = campaign::read(&arguments.campaign)?;
     let mut observed = Observed::default();
     let options = Options { keep_histories: false, ..Options::default() };

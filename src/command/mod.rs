@@ -12,6 +12,7 @@ mod exit;
 mod export;
 mod failure;
 mod fresh_folder;
+mod heap;
 mod identify;
 mod import;
 mod method;

@@ -1,26 +1,19 @@
 //! `rolltank run`: the daemon, until a signal ends it.
 
-use std::env;
 use std::io::Write;
 use std::net::SocketAddr;
-use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
 use devices::clock::WallClock;
 
-use super::{Exit, Failure, tables};
+use super::{Exit, Failure, heap, tables};
 use crate::live::{self, DaemonOptions};
 use crate::page::{Board, Listen, orders};
 
 /// Seconds in a minute.
 const MINUTE_S: f64 = 60.0;
-
-/// One heap for all threads. The C library gives each its own, and what a diagnosis has let go of
-/// then stays with every thread that ever worked on one: a day of them takes more with each run.
-const ONE_HEAP: (&str, &str) = ("MALLOC_ARENA_MAX", "1");
 
 /// Attach to the instruments, record, find runs, identify each as it ends, until SIGTERM
 #[derive(Debug, Args)]
@@ -65,22 +58,8 @@ pub(super) fn token(file: Option<&Path>) -> Result<Option<String>, Failure> {
     Ok(Some(token))
 }
 
-/// Goes on as the same process with [`ONE_HEAP`], which the C library reads only at its start;
-/// whoever has set it otherwise is left with that.
-fn with_one_heap() {
-    let (name, value) = ONE_HEAP;
-    if env::var_os(name).is_some() {
-        return;
-    }
-    let failed = match env::current_exe() {
-        Ok(program) => Command::new(program).args(env::args_os().skip(1)).env(name, value).exec(),
-        Err(error) => error,
-    };
-    tracing::warn!("memory may grow with the runs of the day: {failed}");
-}
-
 pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
-    with_one_heap();
+    heap::go_on_with(heap::OF_A_DAY);
     let options = DaemonOptions {
         folder: arguments.campaign.clone(),
         rotate_s: MINUTE_S * arguments.rotate,

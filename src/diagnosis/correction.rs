@@ -4,6 +4,8 @@
 //! to the readings is then taken off, and the identification sees what the base equation would
 //! have read.
 
+use std::sync::Arc;
+
 use super::observation::Observation;
 use super::run_fit::{ChannelNoise, predict};
 use super::scatter::Scatter;
@@ -45,7 +47,7 @@ pub fn corrected(
     if extensions.is_empty() {
         return None;
     }
-    let survey = Survey::new(vec![observation]);
+    let survey = Survey::new(vec![observation], &Arc::default());
     let mut fit = Fit { extensions, ..survey.first_fit() };
     let [sd_rad, sd_n_m] = survey.runs[0].rough_noise;
     let noise = [ChannelNoise { sd: [sd_rad, sd_n_m], correlation: [0.0; 2] }];

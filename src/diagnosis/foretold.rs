@@ -41,7 +41,8 @@ pub(super) fn grown_survey(survey: &Survey, runs: Vec<Observation>) -> Survey {
         runs: survey.runs.clone(),
         conditions: survey.conditions.clone(),
         condition_of: survey.condition_of.clone(),
-        spent: AtomicU64::new(0),
+        spent: Arc::default(),
+        until: AtomicU64::new(u64::MAX),
     };
     for run in runs {
         grown.runs.push(Arc::new(run));

@@ -47,6 +47,8 @@ pub(super) struct Grown {
     pub(super) implausible: Vec<(&'static str, f64)>,
     /// Whether a law of no known cause does better than any effect.
     pub(super) is_unnamed: bool,
+    /// Whether it stopped growing at what that may cost.
+    pub(super) is_cut_short: bool,
 }
 
 /// A model and the effects in it, from which another grows.
@@ -75,6 +77,7 @@ struct Beside {
 
 /// Grows the base model of a campaign, or a stem that is known from other records of it.
 pub(super) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
+    survey.begin();
     let (current, noise) = with_its_noise(survey, survey.first_fit(), &rough_noise(survey));
     let base_fit = current.fit.clone();
     let base = Growing { current, noise, entered: Vec::new() };
@@ -112,7 +115,8 @@ pub(super) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
         last = settle(survey, fit, &noise);
     }
     let (base, last) = (base.over_scatters(survey), last.over_scatters(survey));
-    Grown { base, last, noise, entered, ranking, implausible, is_unnamed }
+    let is_cut_short = survey.is_spent();
+    Grown { base, last, noise, entered, ranking, implausible, is_unnamed, is_cut_short }
 }
 
 /// Lets effects enter one by one, all but those that are banned, until nothing more is to be named.

@@ -15,13 +15,20 @@ pub(super) struct Survey {
     pub(super) conditions: Vec<String>,
     /// Place of each run's condition.
     pub(super) condition_of: Vec<usize>,
-    /// What fits have cost so far, in simulated values and changes of values.
-    pub(super) spent: AtomicU64,
+    /// What the diagnosis has cost so far, and what it may have cost when this search ends.
+    pub(super) spent: Arc<Spent>,
+    pub(super) until: AtomicU64,
 }
 
-/// What a search for causes may cost: some twenty seconds of the two cores of `docs/bench.md`,
-/// counted rather than timed, so that the same runs give the same answer anywhere.
-const MOST_SPENT: u64 = 4_000_000_000;
+/// What all fits of a diagnosis have cost, in simulated values and changes of values.
+#[derive(Debug, Default)]
+pub(super) struct Spent(AtomicU64);
+
+/// What a diagnosis may cost: some half a minute of the two cores of `docs/bench.md`, counted
+/// rather than timed, so that the same runs give the same answer anywhere.
+const MOST_SPENT: u64 = 5_000_000_000;
+/// What one search for causes may cost of that.
+const MOST_OF_ONE: u64 = 3_500_000_000;
 /// Cost of an echo or of states that remember, against that of a value without.
 const COST_OF_ECHO: u64 = 8;
 const COST_OF_LAG: u64 = 2;
@@ -110,8 +117,8 @@ impl Extension {
 }
 
 impl Survey {
-    /// Puts runs together.
-    pub(super) fn new(mut runs: Vec<Observation>) -> Self {
+    /// Puts runs together, for a diagnosis that has cost so much.
+    pub(super) fn new(mut runs: Vec<Observation>, spent: &Arc<Spent>) -> Self {
         let mut conditions: Vec<String> = Vec::new();
         let largest_rad = runs.iter().map(Observation::half_range_rad).fold(0.0, f64::max);
         // A channel has one range: crests that are flat wherever they are have another cause.
@@ -142,7 +149,13 @@ impl Survey {
             })
             .collect();
         let runs = runs.into_iter().map(Arc::new).collect();
-        Self { runs, conditions, condition_of, spent: AtomicU64::new(0) }
+        Self {
+            runs,
+            conditions,
+            condition_of,
+            spent: Arc::clone(spent),
+            until: AtomicU64::new(MOST_SPENT),
+        }
     }
 
     /// The fit that the identifications of the runs suggest.
@@ -244,14 +257,20 @@ impl Survey {
         (0..self.runs.len()).filter(|r| self.condition_of[*r] == condition).collect()
     }
 
-    /// Whether the search for causes has cost what it may.
-    pub(super) fn is_spent(&self) -> bool {
-        self.spent() > MOST_SPENT
+    /// A search for causes begins.
+    pub(super) fn begin(&self) {
+        let most = MOST_SPENT.min(self.n_spent() + MOST_OF_ONE);
+        self.until.store(most, Ordering::Relaxed);
     }
 
-    /// What fits have cost so far.
-    pub(super) fn spent(&self) -> u64 {
-        self.spent.load(Ordering::Relaxed)
+    /// Whether the search for causes has cost what it may.
+    pub(super) fn is_spent(&self) -> bool {
+        self.n_spent() > self.until.load(Ordering::Relaxed)
+    }
+
+    /// What the diagnosis has cost so far.
+    pub(super) fn n_spent(&self) -> u64 {
+        self.spent.0.load(Ordering::Relaxed)
     }
 
     /// Counts a simulation of a run with so many changes.
@@ -265,7 +284,7 @@ impl Survey {
         let n_values = observation.roll_time_s.len() + observation.moment_time_s.len();
         let each: u64 = 1 + terms.iter().map(cost).sum::<u64>();
         let of_run = n_values as u64 * (1 + n_changes as u64) * each;
-        self.spent.fetch_add(of_run, Ordering::Relaxed);
+        self.spent.0.fetch_add(of_run, Ordering::Relaxed);
     }
 
     /// Every run linearised about its state, with the candidates of each.

@@ -92,6 +92,8 @@ pub struct Diagnosis {
     pub suspects: Vec<&'static str>,
     /// Effects that would explain something only with impossible numbers.
     pub implausible: Vec<&'static str>,
+    /// Whether the search for causes ended at what it may cost.
+    pub cut_short: bool,
     /// Every effect with the logarithm of its Bayes factor against the base model, best first.
     pub ranking: Vec<(&'static str, f64)>,
     /// Gain on runs held out; none with a single run.
@@ -126,8 +128,8 @@ pub(super) fn told(
     reversed: &[Reversed],
     tank: &Tank,
 ) -> Diagnosis {
-    tracing::debug!(spent = survey.spent(), "told");
-    if survey.is_spent() {
+    tracing::debug!(spent = survey.n_spent(), "told");
+    if grown.is_cut_short {
         tracing::warn!("the search for causes was cut short; hint: diagnose fewer runs together");
     }
     let shown = Shown::of(survey);
@@ -174,6 +176,7 @@ pub(super) fn told(
         causes,
         suspects,
         implausible,
+        cut_short: grown.is_cut_short,
         gain: gain(survey, grown),
         bias: bias(survey, grown),
         ranking: grown.ranking.clone(),

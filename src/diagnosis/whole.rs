@@ -1,9 +1,11 @@
 //! The diagnosis of the runs, and of what the model did after its decays where that is explained.
 
+use std::sync::Arc;
+
 use super::growth::{Grown, Stem, grow};
 use super::observation::Observation;
 use super::reversed::Reversed;
-use super::survey::Survey;
+use super::survey::{Spent, Survey};
 use super::verdict::{Diagnosis, Verdict, told};
 use crate::campaign::Tank;
 use crate::run::RunKind;
@@ -33,8 +35,9 @@ pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
         return None;
     }
     let tell = &|survey: &Survey, grown: &Grown| told(survey, grown, &reversed, tank);
+    let spent = Arc::new(Spent::default());
     let of_one_kind = Parts::of(&runs);
-    let survey = Survey::new(runs);
+    let survey = Survey::new(runs, &spent);
     let mut grown = grow(&survey, None);
     let mut together = tell(&survey, &grown);
     if left(&together) > 0.0 {
@@ -76,8 +79,9 @@ fn explained(
     tell: &dyn Fn(&Survey, &Grown) -> Diagnosis,
 ) -> Option<Diagnosis> {
     let short = whole.iter().map(|run| run.clone().first_periods(FIRST_PERIODS));
-    let short = Survey::new(short.collect());
-    let whole = Survey::new(whole);
+    let spent = &survey.spent;
+    let short = Survey::new(short.collect(), spent);
+    let whole = Survey::new(whole, spent);
     let told_from = |stem| {
         let diagnosis = tell(&whole, &grow(&whole, stem));
         (diagnosis.verdict != Verdict::Unexplained).then_some(diagnosis)
@@ -103,7 +107,7 @@ impl Parts {
     /// What has grown on the runs of each kind alone, from which a model of all may grow.
     fn stems(&self, survey: &Survey) -> impl Iterator<Item = Stem> {
         self.0.iter().filter_map(|part| {
-            let part = Survey::new(part.clone());
+            let part = Survey::new(part.clone(), &survey.spent);
             stem(survey, &part, &grow(&part, None))
         })
     }

@@ -14,6 +14,10 @@ const SCHEMA_NAME: &str = "rolltank.diagnosis/1";
 /// The JSON Schema that every [`diagnosis_json`] keeps.
 pub const DIAGNOSIS_SCHEMA: &str = include_str!("diagnosis.schema.json");
 
+/// What is told of a search that ended early.
+pub(super) const CUT_SHORT: &str =
+    "The search for causes ended at what it may cost; fewer runs together are searched to the end";
+
 /// The document; a campaign without runs has neither verdict nor causes.
 pub fn diagnosis_json(diagnosis: Option<&Diagnosis>) -> String {
     let untestable: Vec<Value> =
@@ -21,7 +25,7 @@ pub fn diagnosis_json(diagnosis: Option<&Diagnosis>) -> String {
     let document = match diagnosis {
         None => json!({
             "schema": SCHEMA_NAME, "verdict": null, "causes": [], "suspects": [],
-            "implausible": [], "ranking": [], "gain": null, "bias": null, "next_run": null,
+            "implausible": [], "cut_short": false, "ranking": [], "gain": null, "bias": null, "next_run": null,
             "residual": null, "untestable": untestable,
         }),
         Some(diagnosis) => json!({
@@ -30,6 +34,7 @@ pub fn diagnosis_json(diagnosis: Option<&Diagnosis>) -> String {
             "causes": diagnosis.causes.iter().map(cause).collect::<Vec<_>>(),
             "suspects": diagnosis.suspects,
             "implausible": diagnosis.implausible,
+            "cut_short": diagnosis.cut_short,
             "ranking": ranking(diagnosis),
             "gain": diagnosis.gain.as_ref().map(gain),
             "bias": bias(&diagnosis.bias),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::diagnosis_json::{log10, where_it_lives, word};
+use super::diagnosis_json::{CUT_SHORT, log10, where_it_lives, word};
 use crate::diagnosis::{Cause, Change, Diagnosis, Verdict};
 use crate::model::effects::UNTESTABLE;
 
@@ -30,6 +30,9 @@ fn tell(text: &mut String, diagnosis: &Diagnosis) -> std::fmt::Result {
             "\n  explains a part, but not the whole: {}",
             diagnosis.suspects.join(", ")
         )?;
+    }
+    if diagnosis.cut_short {
+        writeln!(text, "\n  {CUT_SHORT}")?;
     }
     writeln!(text, "\nleft: {}", where_it_lives(&diagnosis.left_after))?;
     match &diagnosis.gain {

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::DiagnosisPage;
 use crate::diagnosis::Cause;
-use crate::report::diagnosis_json::{log10, where_it_lives};
+use crate::report::diagnosis_json::{CUT_SHORT, log10, where_it_lives};
 use crate::report::document::{estimate_cell, number_cell, section, table};
 use crate::report::number::fixed;
 
@@ -45,6 +45,9 @@ pub(super) fn part(page: &DiagnosisPage) -> Option<Markup> {
                     "Would explain something, but only with impossible numbers: "
                     (told.implausible.join(", ")) "."
                 }
+            }
+            @if told.cut_short {
+                p.warning { (CUT_SHORT) "." }
             }
             p { "What remains: " (where_it_lives(&told.left_after)) "." }
         },
