@@ -16,7 +16,7 @@ pub const DIAGNOSIS_SCHEMA: &str = include_str!("diagnosis.schema.json");
 
 /// What is told of a search that ended early.
 pub(super) const CUT_SHORT: &str =
-    "The search for causes ended at what it may cost; fewer runs together are searched to the end";
+    "The search for causes ended at what it may cost; fewer runs are searched to the end";
 
 /// The document; a campaign without runs has neither verdict nor causes.
 pub fn diagnosis_json(diagnosis: Option<&Diagnosis>) -> String {

@@ -82,12 +82,12 @@ impl CarriagePass {
         }
     }
 
-    /// Whether no later sample changes how the carriage moved until `time_s`: a steady stretch that
-    /// goes on ends at the earliest where the speed was last close to its level.
+    /// Whether no later sample changes how the carriage moved until `time_s`: a steady stretch ends
+    /// at the earliest where the speed was last close to its level.
     pub(super) fn is_known(&self, time_s: f64) -> bool {
         let Some(last_s) = self.track.last_s() else { return true };
-        let is_steady = self.steady.back().is_some_and(|s| s.end_s.is_none());
-        last_s >= time_s + KNOWN_AFTER_S || is_steady && self.kept_s >= time_s
+        let was_steady = !self.steady.is_empty() && self.kept_s >= time_s;
+        was_steady || last_s >= time_s + KNOWN_AFTER_S
     }
 
     /// How the carriage moved from `start_s` to `end_s`.
