@@ -25,7 +25,8 @@ pub fn diagnosis_json(diagnosis: Option<&Diagnosis>) -> String {
     let document = match diagnosis {
         None => json!({
             "schema": SCHEMA_NAME, "verdict": null, "causes": [], "suspects": [],
-            "implausible": [], "cut_short": false, "ranking": [], "gain": null, "bias": null, "next_run": null,
+            "implausible": [], "cut_short": false, "ranking": [], "gain": null, "bias": null,
+            "next_run": null,
             "residual": null, "untestable": untestable,
         }),
         Some(diagnosis) => json!({
