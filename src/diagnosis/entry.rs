@@ -86,6 +86,7 @@ fn prefer_the_part(tried: &mut [Tried]) {
 /// Whether an effect is what the form of a known one leaves. What makes the runs agree better
 /// takes nothing from what each of them leaves, and is no crumb of that.
 fn is_crumb_of(known: &Entered, newest: &Entered, settled: &Settled) -> bool {
+    // What only few runs may have takes up little of anything.
     let is_of_each_run =
         settled.fit.extensions.last().is_some_and(|one| one.effect.scope == Scope::Run);
     let is_little = newest.log_bayes_factor < CRUMB_OF_EVIDENCE * known.log_bayes_factor;

@@ -254,7 +254,8 @@ fn lead(run: &Run, record: &Record, rolling_rad_s: f64) -> Lead {
     Lead::new(&time_s, &roll_rad, rolling_rad_s)
 }
 
-/// Longest time from rest to a settled roll [periods] in which nothing but the rod's start went on.
+/// Longest time from rest to a settled roll [periods] in which nothing but the rod's start went on;
+/// by judgement.
 const START_PERIODS: f64 = 5.0;
 
 /// For how long a rod had rolled the model at `origin_s` [s]: it reached half of its amplitude

@@ -4,10 +4,11 @@ use super::growth::{Entered, sure_share};
 use super::leftover::Leftover;
 
 /// Share of what was left before beyond which causes are no whole story; by trial on simulated
-/// campaigns, of whose catalogued effects it takes only free surfaces from their names.
+/// campaigns.
 const MOST_LEFT: f64 = 0.1;
 
-/// Share of the motion of a channel beyond which nothing is explained, whatever was left [-].
+/// Share of the motion of a channel beyond which nothing is explained, whatever was left [-]; by
+/// judgement, against fits that ran away and were best all the same.
 const MOST_OF_MOTION: f64 = 0.2;
 
 /// Whether causes leave too much of what they found: of what was left in the band of the roll, or

@@ -5,7 +5,8 @@ use crate::run::{Run, RunKind};
 
 /// Half periods without which nothing repeats.
 const LEAST_CROSSINGS: usize = 7;
-/// Share of the amplitude that a roll may be off its series and still repeat [-].
+/// Share of the amplitude that a roll may be off its series and still repeat [-]; by judgement, far
+/// above the noise of any roll worth a run and far below what a sweep or a decay is off.
 const MOST_OFF: f64 = 0.03;
 /// Share of the amplitude by which the roll must cross its mean to count [-].
 const CROSSED: f64 = 0.2;

@@ -192,7 +192,7 @@ pub(super) fn summarise(
 /// Place of the offset of a decay among its own numbers, behind roll and rate.
 const OFFSET_OF_DECAY: usize = 2;
 /// What heeling the model may leave of states that it stirs, as a share of its amplitude, where
-/// nobody knows how it was heeled, and beyond what is known of it.
+/// nobody knows how it was heeled, and beyond what is known of it; by judgement.
 const STIRRED: [f64; 2] = [0.3, 0.01];
 
 /// Place of a run's offset among its own numbers.

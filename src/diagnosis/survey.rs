@@ -348,3 +348,23 @@ impl Survey {
         each.collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_search_ends_at_what_it_may_cost_and_the_next_at_what_is_left_of_the_whole() {
+        let spent = Arc::new(Spent::default());
+        let survey = Survey::new(Vec::new(), &spent);
+        survey.begin();
+        assert!(!survey.is_spent());
+        spent.0.fetch_add(MOST_OF_ONE + 1, Ordering::Relaxed);
+        assert!(survey.is_spent());
+        let other = Survey::new(Vec::new(), &spent);
+        other.begin();
+        assert!(!other.is_spent(), "another search has its own share");
+        spent.0.fetch_add(MOST_SPENT - MOST_OF_ONE, Ordering::Relaxed);
+        assert!(other.is_spent(), "and both together have no more than the whole");
+    }
+}

@@ -1,5 +1,6 @@
 //! The diagnosis of the runs, and of what the model did after its decays where that is explained.
 
+use std::cell::OnceCell;
 use std::sync::Arc;
 
 use super::growth::{Grown, Stem, grow};
@@ -36,7 +37,7 @@ pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
     }
     let tell = &|survey: &Survey, grown: &Grown| told(survey, grown, &reversed, tank);
     let spent = Arc::new(Spent::default());
-    let of_one_kind = Parts::of(&runs);
+    let of_one_kind = Parts::of(&runs, &spent);
     let survey = Survey::new(runs, &spent);
     let mut grown = grow(&survey, None);
     let mut together = tell(&survey, &grown);
@@ -55,7 +56,7 @@ pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
     Some(explained.unwrap_or(together))
 }
 
-/// Share of what one diagnosis leaves that a better one may.
+/// Share of what one diagnosis leaves that a better one may; by judgement.
 const LESS: f64 = 0.5;
 
 /// What a diagnosis leaves for sure, as a share of the motion; nothing counts as explained by one
@@ -94,21 +95,31 @@ fn explained(
 }
 
 /// The runs of each kind, where there are both.
-struct Parts(Vec<Vec<Observation>>);
+struct Parts(Vec<Part>);
+
+/// The runs of one kind, and what has grown on them once that was asked.
+struct Part {
+    survey: Survey,
+    grown: OnceCell<Grown>,
+}
 
 impl Parts {
-    fn of(runs: &[Observation]) -> Self {
-        let kinds = [RunKind::Decay, RunKind::Forced];
-        let of_kind = |kind| runs.iter().filter(|run| run.at.kind == kind).cloned().collect();
-        let parts: Vec<Vec<Observation>> = kinds.map(of_kind).to_vec();
-        Self(if parts.iter().any(Vec::is_empty) { Vec::new() } else { parts })
+    fn of(runs: &[Observation], spent: &Arc<Spent>) -> Self {
+        let of_kind = |kind| -> Vec<Observation> {
+            runs.iter().filter(|run| run.at.kind == kind).cloned().collect()
+        };
+        let parts = [RunKind::Decay, RunKind::Forced].map(of_kind);
+        if parts.iter().any(Vec::is_empty) {
+            return Self(Vec::new());
+        }
+        let part = |runs| Part { survey: Survey::new(runs, spent), grown: OnceCell::new() };
+        Self(parts.into_iter().map(part).collect())
     }
 
     /// What has grown on the runs of each kind alone, from which a model of all may grow.
     fn stems(&self, survey: &Survey) -> impl Iterator<Item = Stem> {
-        self.0.iter().filter_map(|part| {
-            let part = Survey::new(part.clone(), &survey.spent);
-            stem(survey, &part, &grow(&part, None))
+        self.0.iter().filter_map(|Part { survey: part, grown }| {
+            stem(survey, part, grown.get_or_init(|| grow(part, None)))
         })
     }
 }

@@ -72,7 +72,8 @@ pub enum Scope {
     OddRun,
 }
 
-/// Runs of which one may have what few have.
+/// Runs of which one may have what few have; by judgement: where more seem to carry a wrong label,
+/// it is the model that is wrong.
 const RUNS_OF_ONE_ODD: usize = 10;
 
 impl Scope {

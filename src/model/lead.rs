@@ -1,4 +1,4 @@
-//! The roll before a decay, which what remembers has followed until the release.
+//! The roll before a run, which what remembers has followed until the run begins.
 
 use super::effect::{Circumstances, Instant, Lag, MOST_LAGS};
 use super::lagging::{follow, jacobian};
@@ -7,14 +7,14 @@ use super::number::{Sloped, slope};
 use super::slopes;
 use super::term::Base;
 
-/// Steps a period of roll.
+/// Steps a period of roll, as a simulated decay has.
 const STEPS_PER_PERIOD: f64 = 48.0;
 /// States before anything has moved.
 const AT_REST: [f64; MOST_LAGS] = [0.0; MOST_LAGS];
 /// Points that a derivative at either end needs.
 const LEAST_POINTS: usize = 5;
 
-/// Roll at equal steps up to the instant at which a decay begins.
+/// Roll at equal steps up to the instant at which a run begins.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Lead {
     step_s: f64,
@@ -24,8 +24,8 @@ pub struct Lead {
 impl Lead {
     /// The readings [rad] up to time zero at their times [s], for a roll of some frequency [rad/s];
     /// empty where they are too few.
-    pub fn new(time_s: &[f64], roll_rad: &[f64], natural_rad_s: f64) -> Self {
-        let step_s = std::f64::consts::TAU / (STEPS_PER_PERIOD * natural_rad_s);
+    pub fn new(time_s: &[f64], roll_rad: &[f64], rolling_rad_s: f64) -> Self {
+        let step_s = std::f64::consts::TAU / (STEPS_PER_PERIOD * rolling_rad_s);
         let first_s = time_s.first().copied().unwrap_or(0.0);
         let n = (-first_s / step_s).max(0.0) as usize;
         if n < LEAST_POINTS || time_s.len() < LEAST_POINTS {
@@ -43,7 +43,7 @@ impl Lead {
         Self { step_s, roll_rad: (0..n).map(at).collect() }
     }
 
-    /// Whether anything is known of the roll before the decay.
+    /// Whether anything is known of the roll before the run.
     pub fn is_known(&self) -> bool {
         !self.roll_rad.is_empty()
     }
@@ -76,7 +76,7 @@ impl Lead {
         run: &Circumstances,
         base: &Base,
     ) -> [f64; MOST_LAGS] {
-        if self.roll_rad.is_empty() {
+        if !self.is_known() {
             return AT_REST;
         }
         let followed = follow(lag, values, AT_REST, &self.instants(run, base), self.step_s);
@@ -93,7 +93,7 @@ impl Lead {
         base: &Base,
     ) -> Vec<[f64; MOST_LAGS]> {
         let numbers = slope::BASE..slope::PARAMETER + values.len();
-        if self.roll_rad.is_empty() {
+        if !self.is_known() {
             return vec![AT_REST; numbers.len()];
         }
         let instants = self.instants(run, base);

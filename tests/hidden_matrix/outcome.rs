@@ -25,10 +25,7 @@ pub(crate) fn read(file: &Path) -> Vec<Value> {
 /// What the base cannot take up of each hidden effect alone.
 pub(crate) fn lambdas(campaign: &Campaign) -> Vec<f64> {
     // A wrong label belongs to the passes, and is the effect of none but itself.
-    let well_labelled = Campaign {
-        passes: campaign.passes.iter().map(Pass::well_labelled).collect(),
-        ..campaign.clone()
-    };
+    let well_labelled = well_labelled(campaign);
     let alone = campaign.effects.iter().map(|effect| {
         let with = if effect.row.id == MISLABELLED.id { campaign } else { &well_labelled };
         misfit(with, std::slice::from_ref(effect), None)
@@ -36,13 +33,16 @@ pub(crate) fn lambdas(campaign: &Campaign) -> Vec<f64> {
     alone.map(|lambda| (lambda * 10.0).round() / 10.0).collect()
 }
 
+/// The campaign with the labels that belong to its passes.
+fn well_labelled(campaign: &Campaign) -> Campaign {
+    let passes = campaign.passes.iter().map(Pass::well_labelled).collect();
+    Campaign { passes, ..campaign.clone() }
+}
+
 /// What the base with one of two hidden effects cannot take up of the other; nothing of one alone.
 fn lambdas_beside(campaign: &Campaign) -> Vec<f64> {
     let [one, other] = &campaign.effects[..] else { return Vec::new() };
-    let well_labelled = Campaign {
-        passes: campaign.passes.iter().map(Pass::well_labelled).collect(),
-        ..campaign.clone()
-    };
+    let well_labelled = well_labelled(campaign);
     let beside = [(one, other), (other, one)].map(|(effect, known)| {
         if known.row.id == MISLABELLED.id {
             misfit(&well_labelled, std::slice::from_ref(effect), None)
