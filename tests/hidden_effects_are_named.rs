@@ -178,6 +178,9 @@ fn water_in_the_hull_is_named_by_what_the_model_does_after_its_decays() {
     for (symbol, truth) in truths {
         let off = (of(symbol, "mean") - truth) / of(symbol, "sd");
         assert!(off.abs() < 4.0, "{symbol} is {off:.1} sd off {truth}");
+        // Without the roll before the release its state is a guess, and so is a tenth of these.
+        let share = of(symbol, "sd") / truth;
+        assert!(share < 0.03, "{symbol} is known to {:.0} % only", 100.0 * share);
     }
 }
 
@@ -188,11 +191,13 @@ fn a_second_cause_is_found_beside_one_that_fills_the_record() {
         (RunSet::Speeds, ["instrument.roll_offset", "run.mislabelled"], 3751),
         (RunSet::Speeds, ["instrument.roll_backlash", "damping.quadratic"], 3739),
     ];
-    for (set, hidden, seed) in cases {
+    let missed = cases.into_iter().filter_map(|(set, hidden, seed)| {
         let (campaign, verdict) = diagnosed(set, &hidden, 2.0, seed);
         let told = score(&verdict, &campaign.asked.hidden, set, |_, _| false);
-        assert!(matches!(told, Outcome::Named | Outcome::InClass), "{hidden:?}: {told:?}");
-    }
+        let is_both = matches!(told, Outcome::Named | Outcome::InClass);
+        (!is_both).then(|| format!("{hidden:?}: {told:?}"))
+    });
+    assert_eq!(missed.collect::<Vec<_>>(), Vec::<String>::new());
 }
 
 #[test]
