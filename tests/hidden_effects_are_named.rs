@@ -12,7 +12,7 @@ use super::hidden_tank::draw::Draw;
 use super::hidden_tank::effects::INVENTED;
 use super::hidden_tank::fit::{INDISTINGUISHABLE, left_by, misfit};
 use super::hidden_tank::folder::play;
-use super::hidden_tank::next_run::towed;
+use super::hidden_tank::next_run::decides;
 use super::hidden_tank::plan::{Action, RunSet};
 use super::hidden_tank::score::{Outcome, score};
 use super::hidden_tank::verdict::{Verdict, diagnose};
@@ -76,7 +76,7 @@ fn a_cubic_restoring_is_named_with_its_class_and_the_run_that_parts_it() {
     assert!(class.iter().all(|id| told.contains(id)), "{told:?}");
     // The run that it asks for parts the two.
     let program = Path::new(env!("CARGO_BIN_EXE_rolltank"));
-    assert_eq!(towed(&campaign, &verdict, program), Some(Outcome::Named), "{}", verdict.json);
+    assert_eq!(decides(&campaign, &verdict, program), Some(true), "{}", verdict.json);
 }
 
 #[test]

@@ -36,14 +36,12 @@ pub(super) struct Form {
     narrow: &'static str,
 }
 
-/// Whether a rival is the favourite itself, its shape left open.
-fn is_form_of(survey: &Survey, rival: &Settled, favourite: &Settled) -> bool {
-    let Some(narrow) = favourite.fit.extensions.last() else { return false };
-    let Some((form, shapes)) = open_shapes(survey, &rival.fit, narrow.effect.id) else {
-        return false;
-    };
+/// Whether the effect at a place of a model is another, `narrow`, its shape left open, and these
+/// runs say that it has the shape of that.
+pub(super) fn is_form_of(survey: &Survey, wide: &Settled, place: usize, narrow: &str) -> bool {
+    let Some((form, shapes)) = shapes(survey, &wide.fit, place, narrow) else { return false };
     shapes.into_iter().all(|(value, column)| {
-        let sd = rival.solution.covariance[column][column].max(0.0).sqrt();
+        let sd = wide.solution.covariance[column][column].max(0.0).sqrt();
         (value - form.at).abs() + 2.0 * sd < form.within
     })
 }
@@ -55,13 +53,22 @@ pub(super) fn open_shapes(
     fit: &Fit,
     narrow: &str,
 ) -> Option<(&'static Form, Vec<(f64, usize)>)> {
-    let e = fit.extensions.len().checked_sub(1)?;
-    let Extension { effect, slots, .. } = &fit.extensions[e];
+    shapes(survey, fit, fit.extensions.len().checked_sub(1)?, narrow)
+}
+
+/// The same of the effect at a place.
+fn shapes(
+    survey: &Survey,
+    fit: &Fit,
+    place: usize,
+    narrow: &str,
+) -> Option<(&'static Form, Vec<(f64, usize)>)> {
+    let Extension { effect, slots, .. } = fit.extensions.get(place)?;
     let form = FORMS.iter().find(|form| form.wide == effect.id && form.narrow == narrow)?;
     let k = (0..effect.n_parameters()).find(|k| effect.parameter(*k).symbol == form.shape)?;
     let layout = Layout::new(survey, fit);
     let shapes = slots.iter().enumerate();
-    Some((form, shapes.map(|(s, values)| (values[k], layout.parameter(fit, e, s, k))).collect()))
+    Some((form, shapes.map(|(s, all)| (all[k], layout.parameter(fit, place, s, k))).collect()))
 }
 
 /// Whether these runs cannot tell a rival from the favourite: it is as probable, or falls a little
@@ -73,7 +80,9 @@ pub(super) fn is_same(
     rival: &Settled,
     left: f64,
 ) -> bool {
-    if is_form_of(survey, rival, favourite) {
+    let newest = rival.fit.extensions.len().saturating_sub(1);
+    let narrow = favourite.fit.extensions.last().map_or("", |favourite| favourite.effect.id);
+    if is_form_of(survey, rival, newest, narrow) {
         return false;
     }
     let behind = favourite.log_evidence - rival.log_evidence;

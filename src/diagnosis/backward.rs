@@ -1,12 +1,12 @@
 //! The grown model looked back on: effects that are not missed leave, others may take their place.
 
-use super::alike::{SAME, contains, is_approximate, is_same};
+use super::alike::{SAME, contains, is_approximate, is_form_of, is_same};
 use super::growth::{ENTERS, Entered, leftovers, sure_excess};
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score};
 use super::settle::{Settled, settle};
 use super::survey::Survey;
-use super::trial::{fit_all, is_newest_plausible, with};
+use super::trial::{Tried, fit_all, is_newest_plausible, with};
 use crate::model::effects;
 
 /// Takes each effect out again: one that is missed too little leaves, and what could stand in its
@@ -34,13 +34,14 @@ pub(super) fn check_backward(
             entered.remove(e);
             continue;
         }
-        // A rest that does not settle judges nothing: what was told when it entered stays.
-        if !missed.is_finite() || without.promised > SAME {
+        if !missed.is_finite() {
             e += 1;
             continue;
         }
+        // A rest that does not settle judges no other effects.
+        let is_settled = without.promised < SAME;
         // What could not be told from it as it entered is asked again, whatever its score.
-        let before = &entered[e].equivalent_to;
+        let before = entered[e].equivalent_to.clone();
         let (known, other): (Vec<Scored>, Vec<Scored>) = score(survey, &without.fit, noise)
             .into_iter()
             .filter(|s| {
@@ -48,16 +49,31 @@ pub(super) fn check_backward(
                 id != taken.effect.id && !effects::is_unnamed(id)
             })
             .partition(|s| before.contains(&s.extension.effect.id));
-        let other = other.into_iter().filter(|s| s.log_bayes_factor > 0.3 * missed).take(4);
+        let is_asked = |s: &Scored| is_settled && s.log_bayes_factor > 0.3 * missed;
+        let other = other.into_iter().filter(is_asked).take(4);
         let rivals: Vec<Scored> = known.into_iter().chain(other).collect();
         let tried = fit_all(survey, &without, &rivals, noise);
         let left = sure_excess(&leftovers(survey, &current.fit));
-        entered[e].log_bayes_factor = missed;
+        for one in &tried {
+            let behind = current.log_evidence - one.settled.log_evidence;
+            tracing::debug!(of = taken.effect.id, rival = one.id, behind, missed, "looked back");
+        }
+        let is_narrower = |id: &str| is_form_of(survey, &current, e, id);
+        let is_no_other = |id: &str| contains(id, taken.effect.id) || is_narrower(id);
+        // Of a rival that may yet come as near, what was told as this one entered stays.
+        let is_equal = |one: &Tried| {
+            let Settled { log_evidence, promised, .. } = &one.settled;
+            let comes_near = log_evidence + promised > current.log_evidence - SAME;
+            is_same(survey, &without, &current, &one.settled, left)
+                || (*promised > SAME && comes_near && before.contains(&one.id))
+        };
+        if is_settled {
+            entered[e].log_bayes_factor = missed;
+        }
         entered[e].equivalent_to = tried
             .iter()
-            .filter(|one| is_newest_plausible(survey, &one.settled))
-            .filter(|one| !contains(one.id, taken.effect.id))
-            .filter(|one| is_same(survey, &without, &current, &one.settled, left))
+            .filter(|one| is_newest_plausible(survey, &one.settled) && !is_no_other(one.id))
+            .filter(|one| is_equal(one))
             .map(|one| one.id)
             .collect();
         let better = tried
@@ -65,7 +81,7 @@ pub(super) fn check_backward(
             .filter(|one| is_newest_plausible(survey, &one.settled))
             .filter(|one| {
                 // A part that does as well is better than the whole.
-                let is_part = contains(taken.effect.id, one.id);
+                let is_part = contains(taken.effect.id, one.id) || is_narrower(one.id);
                 let margin = if is_part { -0.25 * SAME } else { 0.5 * SAME };
                 one.settled.log_evidence > current.log_evidence + margin
             })

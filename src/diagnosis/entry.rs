@@ -1,6 +1,6 @@
 //! Whether the best of the effects that were tried may enter the model.
 
-use super::alike::{SAME, contains, is_approximate, is_same};
+use super::alike::{SAME, contains, is_approximate, is_form_of, is_same};
 use super::growth::{ENTERS, Entered, excess, leftovers, sure_excess, sure_share};
 use super::leftover::Leftover;
 use super::settle::Settled;
@@ -42,7 +42,7 @@ pub(super) fn best(
     mut tried: Vec<Tried>,
     known: &[Entered],
 ) -> Best {
-    prefer_the_part(&mut tried);
+    prefer_the_part(survey, &mut tried);
     let Some(best) = tried.first() else { return Best::None };
     let log_bayes_factor = best.settled.log_evidence - current.log_evidence;
     if log_bayes_factor < if known.is_empty() { ENTERS } else { ENTERS_BESIDE } {
@@ -71,13 +71,16 @@ pub(super) fn best(
     }
 }
 
-/// Of two that do as well, the one that is a part of the other comes first.
-fn prefer_the_part(tried: &mut [Tried]) {
+/// Of two that do as well, the one that is a part or a form of the other comes first.
+fn prefer_the_part(survey: &Survey, tried: &mut [Tried]) {
     let Some(first) = tried.first() else { return };
     let least = first.settled.log_evidence - 0.25 * SAME;
+    let newest = first.settled.fit.extensions.len().saturating_sub(1);
+    let is_part =
+        |id| contains(first.id, id) || is_form_of(survey, &first.settled, newest, id);
     let part = tried[1..]
         .iter()
-        .position(|one| one.settled.log_evidence > least && contains(first.id, one.id));
+        .position(|one| one.settled.log_evidence > least && is_part(one.id));
     if let Some(k) = part {
         tried[..=k + 1].rotate_right(1);
     }

@@ -23,7 +23,8 @@ cargo test --test hidden_matrix -- WHAT [HOW]
     --outcomes FILE           default target/hidden_effects.jsonl; what is in it is not run again
     --report FILE             default docs/hidden_effects.md
     --lambda                  no diagnosis: print what the base cannot take up
-    --play FOLDER             no diagnosis: write the campaigns, the truth beside each";
+    --play FOLDER             no diagnosis: write the campaigns, the truth beside each
+    --towed                   with `--play`: also with the runs that an undecided answer asks for";
 
 /// What to do with the cells.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +52,8 @@ pub(crate) struct Arguments {
     pub(crate) seeds: std::ops::Range<u64>,
     pub(crate) scatter: f64,
     pub(crate) threads: usize,
+    /// Play also the campaigns that undecided answers ask for.
+    pub(crate) is_towed: bool,
     pub(crate) program: PathBuf,
     pub(crate) outcomes: PathBuf,
     pub(crate) tables: PathBuf,
@@ -71,6 +74,7 @@ impl Arguments {
             seeds: 0..10,
             scatter: SCATTER,
             threads: 1,
+            is_towed: false,
             program: PathBuf::from(env!("CARGO_BIN_EXE_rolltank")),
             outcomes: home.join("target/hidden_effects.jsonl"),
             tables: home.join("docs/hidden_effects.md"),
@@ -92,6 +96,7 @@ impl Arguments {
                 "--program" => all.program = value()?.into(),
                 "--outcomes" => all.outcomes = value()?.into(),
                 "--report" => all.tables = value()?.into(),
+                "--towed" => all.is_towed = true,
                 "--tables" => errand = Some(Errand::Tables),
                 "--lambda" => errand = Some(Errand::Lambda),
                 "--play" => errand = Some(Errand::Play(value()?.into())),

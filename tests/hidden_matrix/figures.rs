@@ -57,8 +57,9 @@ pub(crate) fn append(page: &mut String, outcomes: &[Value]) {
         covered[1]
     )
     .expect("text");
-    let towed: Vec<&str> = right.iter().filter_map(|outcome| outcome["towed"].as_str()).collect();
-    let decided = towed.iter().filter(|outcome| **outcome == "named").count();
+    let towed: Vec<bool> =
+        right.iter().filter_map(|outcome| outcome["decided"].as_bool()).collect();
+    let decided = towed.iter().filter(|decided| **decided).count();
     let share = 100.0 * decided as f64 / towed.len().max(1) as f64;
     writeln!(page, "| undecided, and the run asked for decides | {} | {share:.1} % |", towed.len())
         .expect("text");

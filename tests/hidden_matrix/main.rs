@@ -26,6 +26,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use arguments::{Arguments, Errand};
 use hidden_tank::campaign::{Asked, Campaign};
+use hidden_tank::{next_run, verdict};
 
 fn main() -> ExitCode {
     let arguments = match Arguments::read(std::env::args().skip(1)) {
@@ -54,9 +55,19 @@ fn main() -> ExitCode {
 fn play(arguments: &Arguments, place: &Path) {
     for asked in cells::all(arguments) {
         let campaign = Campaign::draw(&asked);
-        let place = place.join(asked.name().replace([' ', '#'], "_"));
-        let played = hidden_tank::folder::play(&campaign, &place);
-        println!("{}\n  truth: {}", played.folder.display(), played.truth.display());
+        let name = asked.name().replace([' ', '#'], "_");
+        let written = |campaign: &Campaign, name: &str| {
+            let played = hidden_tank::folder::play(campaign, &place.join(name));
+            println!("{}\n  truth: {}", played.folder.display(), played.truth.display());
+            played
+        };
+        let played = written(&campaign, &name);
+        if arguments.is_towed
+            && let Ok(verdict) = verdict::diagnose(&arguments.program, &played.folder)
+            && let Some(longer) = next_run::towed(&campaign, &verdict)
+        {
+            written(&longer, &format!("{name}_towed"));
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use crate::hidden_tank::campaign::{Asked, Campaign};
 use crate::hidden_tank::effects::labels::MISLABELLED;
 use crate::hidden_tank::fit::{INDISTINGUISHABLE, left_by, misfit, misfit_beside};
 use crate::hidden_tank::folder::play;
-use crate::hidden_tank::next_run::towed;
+use crate::hidden_tank::next_run::decides;
 use crate::hidden_tank::plan::Pass;
 use crate::hidden_tank::score::{Outcome, score};
 use crate::hidden_tank::timeline::Timeline;
@@ -92,7 +92,7 @@ pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
     line["values"] =
         campaign.effects.iter().map(|effect| json!(effect.values)).collect::<Vec<_>>().into();
     line["covered"] = covered(&campaign, &verdict.json["causes"]);
-    line["towed"] = json!(towed(&campaign, &verdict, program).map(word));
+    line["decided"] = json!(decides(&campaign, &verdict, program));
     tell(&mut line, &verdict);
     line
 }

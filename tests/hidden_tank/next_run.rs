@@ -10,21 +10,35 @@ use super::plan::Action;
 use super::score::{Outcome, score};
 use super::verdict::{Verdict, diagnose};
 
-/// The outcome with the runs that an ambiguous answer asks for together; none where it asks for
+/// The campaign with the runs that an ambiguous answer asks for together; none where it asks for
 /// none, or where only a static test would do.
-pub(crate) fn towed(campaign: &Campaign, verdict: &Verdict, program: &Path) -> Option<Outcome> {
+pub(crate) fn towed(campaign: &Campaign, verdict: &Verdict) -> Option<Campaign> {
     if verdict.word != "ambiguous" {
         return None;
     }
     let next = &verdict.json["next_run"];
-    let mut longer = with_run(campaign, next)?;
-    if next["with"].is_object() {
-        longer = with_run(&longer, &next["with"])?;
-    }
+    let longer = with_run(campaign, next)?;
+    if next["with"].is_object() { with_run(&longer, &next["with"]) } else { Some(longer) }
+}
+
+/// Whether the runs that an ambiguous answer asks for part what hides from the rest of its class;
+/// none where it asks for none. Another class, which no roll test may part, may be left.
+pub(crate) fn decides(campaign: &Campaign, verdict: &Verdict, program: &Path) -> Option<bool> {
+    let longer = towed(campaign, verdict)?;
     let place = tempfile::tempdir().expect("a place for a campaign");
     let answer = diagnose(program, &play(&longer, place.path()).folder).ok()?;
+    let asked = &campaign.asked;
+    let parts = verdict.json["next_run"]["parts"].as_array()?;
+    let is_part = |id: &String| parts.iter().any(|part| part.as_str() == Some(id));
+    let is_parted = |hidden: &String| {
+        let cause = answer.causes.iter().find(|cause| cause.effect == *hidden);
+        cause.is_some_and(|cause| !cause.equivalent_to.iter().any(is_part))
+    };
+    let mut meant = asked.hidden.iter().filter(|id| is_part(id)).peekable();
     // No help for an answer that only happens to fit: the runs were to part the names.
-    Some(score(&answer, &campaign.asked.hidden, campaign.asked.set, |_, _| false))
+    let outcome = score(&answer, &asked.hidden, asked.set, |_, _| false);
+    let is_right = matches!(outcome, Outcome::Named | Outcome::InClass);
+    Some(is_right && meant.peek().is_some() && meant.all(is_parted))
 }
 
 fn with_run(campaign: &Campaign, run: &Value) -> Option<Campaign> {
