@@ -68,8 +68,9 @@ fn left_in_channels(survey: &Survey, fit: &Fit) -> [f64; 2] {
 
 /// Expected logarithm of a Bayes factor at which nine runs in ten decide: the misfits of two
 /// models that lie `D` apart differ by `D` with a standard deviation of `2 sqrt(D)`, and must by
-/// 12; `D - 1.28 * 2 sqrt(D) > 12` from `D = 25` on.
-const DECIDES: f64 = 12.5;
+/// 12; `D - 1.28 * 2 sqrt(D) > 12` from `D = 25` on. Half as much again is for the numbers of the
+/// favourite, which are not known so well.
+const DECIDES: f64 = 20.0;
 /// What a second run must bring to be asked for.
 const WORTH_A_RUN: f64 = 2.0;
 

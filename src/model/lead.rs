@@ -55,11 +55,16 @@ impl Lead {
             let (from, to) = (k.saturating_sub(1), (k + 1).min(last));
             (self.roll_rad[to] - self.roll_rad[from]) / (self.step_s * (to - from) as f64)
         };
+        let acceleration = |k: usize| {
+            let middle = k.clamp(1, last - 1);
+            let [before, here, after] = [middle - 1, middle, middle + 1].map(|k| self.roll_rad[k]);
+            (before - 2.0 * here + after) / self.step_s.powi(2)
+        };
         let instant = |k: usize| Instant {
             time_s: self.step_s * (k as f64 - last as f64),
             roll_rad: self.roll_rad[k],
             rate_rad_per_s: rate(k),
-            acceleration_rad_per_s2: 0.0,
+            acceleration_rad_per_s2: acceleration(k),
             moment_n_m: 0.0,
             natural_rad_s: base.natural_rad_s,
             b1_per_s: base.b1_per_s,
@@ -116,6 +121,10 @@ impl Lead {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::effect::Acts;
+    use crate::model::effects;
+    use crate::model::term::tests::run;
+    use crate::run::RunKind;
 
     #[test]
     fn readings_at_any_rate_become_equal_steps_up_to_the_release() {
@@ -127,5 +136,20 @@ mod tests {
         assert!((lead.roll_rad[n - 1] - 0.2).abs() < 2e-4, "{}", lead.roll_rad[n - 1]);
         assert!((lead.roll_rad[0] - 0.13).abs() < 5e-4, "{}", lead.roll_rad[0]);
         assert_eq!(Lead::new(&[], &[], 6.9), Lead::default());
+    }
+
+    #[test]
+    fn a_mode_that_gives_way_swings_as_the_rod_does_when_the_run_begins() {
+        let (rod_rad_s, mode_rad_s) = (10.0_f64, 20.0_f64);
+        let time_s: Vec<f64> = (0..1200).map(|k| -12.0 + 0.01 * f64::from(k)).collect();
+        let roll_rad: Vec<f64> = time_s.iter().map(|t| 0.1 * (rod_rad_s * t).cos()).collect();
+        let lead = Lead::new(&time_s, &roll_rad, rod_rad_s);
+        let effect = effects::effect("tank.coupled_mode").unwrap();
+        let Acts::Lagging(lag) = effect.acts else { panic!("it remembers") };
+        let run = Circumstances { rolling_rad_s: rod_rad_s, ..run(RunKind::Forced) };
+        let base = Base { natural_rad_s: 6.9, b1_per_s: 0.2, b3_s: 0.0, log_scale: 0.0 };
+        let [swing, _] = lead.states(&lag, &[0.05, mode_rad_s], &run, &base);
+        let steady = 0.1 * rod_rad_s.powi(2) / (mode_rad_s.powi(2) - rod_rad_s.powi(2));
+        assert!((swing / steady - 1.0).abs() < 0.06, "{swing} and {steady} at once");
     }
 }
