@@ -161,6 +161,7 @@ impl Observation {
             n_runs: 1,
             initial_roll_rad: start[0],
             rolled_for_s: rolled_for_s(&run.run, record.origin_s, rolling_rad_s),
+            since_rest_s: run.run.still.map_or(0.0, |still| record.origin_s - still.end_s),
         };
         let moment_noise =
             if moment.value.is_empty() { 1.0 } else { facts::rough_noise(&moment.value) };

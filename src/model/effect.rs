@@ -132,6 +132,9 @@ pub struct Circumstances {
     /// For how long a rod had rolled the model when its record begins [s]: what comes back later
     /// than that is not back yet. Infinite where it is not known.
     pub rolled_for_s: f64,
+    /// Time from the model's last rest, where its channels read their zeros, to time zero [s];
+    /// nought where it is not known.
+    pub since_rest_s: f64,
 }
 
 /// What a roll record shows without any model.

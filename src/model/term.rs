@@ -85,6 +85,7 @@ pub(super) mod tests {
             n_runs: 6,
             initial_roll_rad: 0.2,
             rolled_for_s: 3.0,
+            since_rest_s: 5.0,
         }
     }
 

@@ -16,8 +16,9 @@ use super::track::Track;
 pub(super) const KEPT_S: f64 = 20.0;
 /// How long before a run its roll is kept [s]: heeling the model and holding it there.
 pub(super) const LEAD_S: f64 = 12.0;
-/// Still stretches remembered: the rest, and the heel at which the model was held after it.
-const N_STILL: usize = 4;
+/// Still stretches remembered: the rest, and those at the heel at which the model was held after
+/// it, which a trembling hand breaks.
+const N_STILL: usize = 16;
 /// Standard deviation of three bins weighted 1/4, 1/2, 1/4.
 const SMOOTHED: f64 = 0.612;
 

@@ -9,7 +9,7 @@ use crate::model::number::Number;
 pub(super) const EFFECT: Effect = Effect {
     id: "instrument.force_drift",
     layer: Layer::Instrument,
-    equation: "M + m0 + d t/20 s",
+    equation: "M + m0 + d (t + rest)/20 s",
     strengths: &[
         Parameter::new("d", "N m", 0.1, [-2.0, 2.0]),
         Parameter::new("m0", "N m", 0.2, [-5.0, 5.0]),
@@ -24,5 +24,5 @@ pub(super) const EFFECT: Effect = Effect {
 };
 
 fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
-    p[1] + p[0] * i.time_s / 20.0
+    p[1] + p[0] * (i.time_s + i.run.since_rest_s) / 20.0
 }

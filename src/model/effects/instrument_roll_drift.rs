@@ -9,7 +9,7 @@ use crate::model::number::Number;
 pub(super) const EFFECT: Effect = Effect {
     id: "instrument.roll_drift",
     layer: Layer::Instrument,
-    equation: "phi + e0 + d t/20 s",
+    equation: "phi + e0 + d (t + rest)/20 s",
     strengths: &[
         Parameter::new("d", "rad", 0.002, [-0.02, 0.02]),
         Parameter::new("e0", "rad", 0.003, [-0.05, 0.05]),
@@ -24,5 +24,5 @@ pub(super) const EFFECT: Effect = Effect {
 };
 
 fn adds<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
-    all.iter().map(|i| p[1] + p[0] * i.time_s / 20.0).collect()
+    all.iter().map(|i| p[1] + p[0] * (i.time_s + i.run.since_rest_s) / 20.0).collect()
 }
