@@ -7,9 +7,15 @@ use std::process::Command;
 /// Names and values that the C library reads.
 type Settings = &'static [(&'static str, &'static str)];
 
-/// One heap for all threads. The C library gives each its own, and what a diagnosis has let go of
-/// then stays with every thread that ever worked on one: a day of them takes more with each run.
-pub(super) const OF_A_DAY: Settings = &[("MALLOC_ARENA_MAX", "1")];
+/// One heap for all threads, and none for what is large. The C library gives each thread its own,
+/// and what a diagnosis has let go of then stays with every thread that ever worked on one; and it
+/// learns to keep large series in the heap, where what is kept of a run holds fast what was below
+/// it: a day of them takes more with each run.
+pub(super) const OF_A_DAY: Settings = &[
+    ("MALLOC_ARENA_MAX", "1"),
+    ("MALLOC_MMAP_THRESHOLD_", "131072"),
+    ("MALLOC_TRIM_THRESHOLD_", "4194304"),
+];
 
 /// A heap that keeps what a search lets go of, for the next fit takes as much again: giving it back
 /// and asking for it anew took as long as the search itself.

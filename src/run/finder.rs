@@ -311,6 +311,28 @@ mod tests {
     }
 
     #[test]
+    fn a_model_held_on_a_carriage_that_shakes_it_is_free_when_it_is_let_go() {
+        let mut finder = RunFinder::new(LIMITS);
+        let mut events = Vec::new();
+        for k in 0..3000 {
+            let time_s = f64::from(k) * 0.01;
+            let speed_m_s = (0.5 * (time_s - 6.0)).clamp(0.0, 1.0);
+            let shaking = 1.1e-3 * speed_m_s * (18.2 * time_s).sin();
+            let free_s = (time_s - 14.0).max(0.0);
+            let heel = 0.19 * ((time_s - 6.0) / 1.5).clamp(0.0, 1.0);
+            let roll = heel * (-0.3 * free_s).exp() * (6.9 * free_s).cos() + shaking;
+            let ripple = 2e-4 * (97.0 * time_s).sin();
+            for (quantity, value) in [(Quantity::Roll, roll), (Quantity::Speed, speed_m_s)] {
+                let value = value + ripple;
+                finder.push(&Sample { quantity, time_s, value }, &mut events);
+            }
+        }
+        finder.finish(&mut events);
+        let Some(Event::Run(run)) = events.first() else { panic!("{events:?}") };
+        assert!((run.start_s - 14.0).abs() < 0.2, "{} s", run.start_s);
+    }
+
+    #[test]
     fn a_run_is_told_as_soon_as_its_end_is_known() {
         let mut finder = RunFinder::new(LIMITS);
         let mut events = Vec::new();

@@ -2,6 +2,7 @@
 
 use super::RunEnd;
 use super::forced::Cycle;
+use super::half_cycles::Turn;
 use super::records::Records;
 
 /// Growth of the amplitude that a change of speed explains no more than a free roll [-].
@@ -64,7 +65,12 @@ impl Trust {
         // A hand that stays would have taken more: this was a blow against the roll.
         let struck_back = self.distrust == Some(TOUCHED)
             && next.half.amplitude_rad() >= STRUCK_SHARE * self.touched_rad;
-        if growth > GROWTH && !settled {
+        // No free roll lingers at its turn for as long as a swing takes: a hand held the model.
+        let Turn { time_s, left_s, .. } = next.half.start;
+        let was_held = next.steady && left_s - time_s > next.half.duration_from_hold_s();
+        if was_held {
+            self.distrust = None;
+        } else if growth > GROWTH && !settled {
             self.distrust = Some(DISTURBED);
         } else if follows && (struck_back || (settled && growth > NEW_START))
             || next.steady && next.half.is_from_hold()
