@@ -87,11 +87,24 @@ fn explained(
         let diagnosis = tell(&whole, &grow(&whole, stem));
         (diagnosis.verdict != Verdict::Unexplained).then_some(diagnosis)
     };
-    let first = stem(&whole, survey, grown).and_then(|stem| told_from(Some(stem)));
+    let first = || stem(&whole, survey, grown).and_then(|stem| told_from(Some(stem)));
     let of_short = || stem(&whole, &short, &grow(&short, None));
     let second = || of_short().and_then(|stem| told_from(Some(stem)));
     let third = || of_one_kind.stems(&whole).find_map(|stem| told_from(Some(stem)));
-    first.or_else(second).or_else(third).or_else(|| told_from(None))
+    let fourth = || told_from(None);
+    // One that explains all is looked for no further; of others the one that leaves least counts.
+    let ways: [&dyn Fn() -> Option<Diagnosis>; 4] = [&first, &second, &third, &fourth];
+    let mut best: Option<Diagnosis> = None;
+    for way in ways {
+        if best.as_ref().is_some_and(|best| left(best) <= 0.0) || whole.is_spent() {
+            break;
+        }
+        let Some(other) = way() else { continue };
+        if best.as_ref().is_none_or(|best| left(&other) < LESS * left(best)) {
+            best = Some(other);
+        }
+    }
+    best
 }
 
 /// The runs of each kind, where there are both.
