@@ -87,11 +87,9 @@ fn prefer_the_part(survey: &Survey, tried: &mut [Tried]) {
     let Some(first) = tried.first() else { return };
     let least = first.settled.log_evidence - 0.25 * SAME;
     let newest = first.settled.fit.extensions.len().saturating_sub(1);
-    let is_part =
-        |id| contains(first.id, id) || is_form_of(survey, &first.settled, newest, id);
-    let part = tried[1..]
-        .iter()
-        .position(|one| one.settled.log_evidence > least && is_part(one.id));
+    let is_part = |id| contains(first.id, id) || is_form_of(survey, &first.settled, newest, id);
+    let part =
+        tried[1..].iter().position(|one| one.settled.log_evidence > least && is_part(one.id));
     if let Some(k) = part {
         tried[..=k + 1].rotate_right(1);
     }

@@ -43,20 +43,10 @@ fn line(values: &[f64], rate_hz: f64, lowest_hz: f64, rolling_hz: f64) -> Option
     if n < 64 {
         return None;
     }
-    let windowed: Vec<f64> = differences
-        .iter()
-        .enumerate()
-        .map(|(i, d)| d * (std::f64::consts::PI * (i as f64 + 0.5) / n as f64).sin().powi(2))
-        .collect();
     let first = (lowest_hz * n as f64 / rate_hz).ceil() as usize;
-    let angle = |bin: usize| std::f64::consts::TAU * bin as f64 / n as f64;
-    let angles: Vec<f64> = (first..=n / 2).map(angle).collect();
     // Less what fourth differences make of it.
-    let seen = spectrum::powers(&windowed, &angles).into_iter().zip(&angles);
+    let seen = windowed_powers(&differences, first).into_iter();
     let powers: Vec<f64> = seen.map(|(power, a)| power / (2.0 * (0.5 * a).sin()).powi(8)).collect();
-    if powers.len() < 32 {
-        return None;
-    }
     // An odd multiple of the roll's frequency is the roll's own, bent by a channel or a force.
     let is_own = |bin: usize| {
         let hz = (first + bin) as f64 * rate_hz / n as f64;
@@ -64,9 +54,55 @@ fn line(values: &[f64], rate_hz: f64, lowest_hz: f64, rolling_hz: f64) -> Option
         let off_hz = (hz - order as f64 * rolling_hz).abs();
         order <= 15 && !order.is_multiple_of(2) && off_hz < 2.0 * rate_hz / n as f64 + 0.01 * hz
     };
-    let foreign = (0..powers.len()).filter(|bin| !is_own(*bin));
+    stands_out(&powers, n, &|bin| !is_own(bin)).map(|line| line.at(first, rate_hz, n))
+}
+
+/// Lowest frequency that is no slow course, in bins of a windowed record.
+const FIRST_BIN: usize = 3;
+
+/// The strongest line in what a model leaves of a roll.
+pub(super) fn line_left(left: &[f64], rate_hz: f64) -> Option<Line> {
+    let n = left.len();
+    let seen = windowed_powers(left, FIRST_BIN).into_iter();
+    let powers: Vec<f64> = seen.map(|(power, _)| power).collect();
+    stands_out(&powers, n, &|_| true).map(|line| line.at(FIRST_BIN, rate_hz, n))
+}
+
+/// Powers of the values under Hann's window from a bin on, each with its angle per sample.
+fn windowed_powers(values: &[f64], first: usize) -> Vec<(f64, f64)> {
+    let n = values.len();
+    let windowed: Vec<f64> = values
+        .iter()
+        .enumerate()
+        .map(|(i, v)| v * (std::f64::consts::PI * (i as f64 + 0.5) / n as f64).sin().powi(2))
+        .collect();
+    let angle = |bin: usize| std::f64::consts::TAU * bin as f64 / n as f64;
+    let angles: Vec<f64> = (first..=n / 2).map(angle).collect();
+    spectrum::powers(&windowed, &angles).into_iter().zip(angles).collect()
+}
+
+/// A line by its bin, before its frequency is told.
+struct Standing {
+    bin: usize,
+    line: Line,
+}
+
+impl Standing {
+    /// The line, where the first bin is `first` of `n` samples.
+    fn at(self, first: usize, rate_hz: f64, n: usize) -> Line {
+        let frequency_hz = (first + self.bin) as f64 * rate_hz / n as f64;
+        Line { frequency_hz, ..self.line }
+    }
+}
+
+/// The strongest of the powers of `n` samples that may be a line, where it stands out of all.
+fn stands_out(powers: &[f64], n: usize, may_be: &dyn Fn(usize) -> bool) -> Option<Standing> {
+    if powers.len() < 32 {
+        return None;
+    }
+    let foreign = (0..powers.len()).filter(|bin| may_be(*bin));
     let best = foreign.max_by(|a, b| powers[*a].total_cmp(&powers[*b]))?;
-    let mut sorted = powers.clone();
+    let mut sorted = powers.to_vec();
     let middle = sorted.len() / 2;
     let median = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
     let mean = median / std::f64::consts::LN_2;
@@ -79,6 +115,6 @@ fn line(values: &[f64], rate_hz: f64, lowest_hz: f64, rolling_hz: f64) -> Option
     let noise_sd = (mean / (0.375 * n as f64)).sqrt();
     let amplitude_rad = 2.0 * (powers[best] / (0.25 * (n * n) as f64)).sqrt();
     let amplitude_sd_rad = noise_sd * (2.0 / n as f64).sqrt();
-    let frequency_hz = (first + best) as f64 * rate_hz / n as f64;
-    Some(Line { frequency_hz, amplitude_rad, amplitude_sd_rad, log_bayes_factor })
+    let line = Line { frequency_hz: 0.0, amplitude_rad, amplitude_sd_rad, log_bayes_factor };
+    Some(Standing { bin: best, line })
 }

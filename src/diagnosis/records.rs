@@ -1,11 +1,12 @@
 //! Causes that a record shows by itself: its steps, and lines in its noise.
 
+use super::facts;
 use super::observation::Observation;
-use super::survey::Survey;
+use super::survey::{Fit, Survey};
 use super::verdict::Cause;
 use crate::inverse::estimate::Estimate;
 use crate::model::effects;
-use crate::model::{Acts, Effect, Recurs, Seen};
+use crate::model::{Acts, Effect, Facts, Recurs, Seen};
 
 /// Least logarithm of a Bayes factor over all runs.
 const SURE: f64 = 14.0;
@@ -24,9 +25,19 @@ struct Found {
 pub(super) struct Shown(Vec<Found>);
 
 impl Shown {
-    /// Of all runs together.
-    pub(super) fn of(survey: &Survey) -> Self {
-        Self(found(survey))
+    /// Of all runs together, with lines in what a model leaves of them that are higher the faster
+    /// the carriage runs.
+    pub(super) fn of(survey: &Survey, fit: &Fit) -> Self {
+        let mut found = found(survey);
+        if !found.iter().any(|found| matches!(found.recurs, Some(Recurs::PerFroude(_)))) {
+            found.extend(found_left(survey, fit));
+        }
+        Self(found)
+    }
+
+    /// Whether the records show anything.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
     }
 
     /// Whether a line that the records show is what is left at a frequency [rad/s] of a run.
@@ -56,7 +67,8 @@ fn found(survey: &Survey) -> Vec<Found> {
         let seen: Vec<(&Observation, Seen)> =
             able.iter().filter_map(|run| Some((*run, sees(&run.facts)?))).collect();
         let is_line = seen.iter().any(|(_, seen)| seen.recurs.is_some());
-        let told = if is_line { one_line(&able, &seen) } else { Some(seen) };
+        let band = |run: &Observation| run.facts.line_band_hz;
+        let told = if is_line { one_line(&able, &seen, &band) } else { Some(seen) };
         let Some(seen) = told else { continue };
         let log_bayes_factor = seen.iter().map(|(_, seen)| seen.log_bayes_factor).sum();
         if log_bayes_factor > SURE {
@@ -78,11 +90,57 @@ fn found(survey: &Survey) -> Vec<Found> {
     found
 }
 
+/// Runs, and times by which the fastest of them is faster than the slowest, in which a line must go
+/// with the speed.
+const RUNS_IN_PROPORTION: usize = 3;
+const SPEEDS_IN_PROPORTION: f64 = 1.3;
+
+/// An effect whose line a model leaves in runs of several speeds, in proportion to these.
+fn found_left(survey: &Survey, fit: &Fit) -> Option<Found> {
+    let lines = survey.each_run(&|r| {
+        let run = &survey.runs[r];
+        let n = run.roll_rad.len();
+        let span_s = run.roll_time_s.last()? - run.roll_time_s.first()?;
+        facts::line_left(&survey.residual(fit, r)[..n], (n - 1) as f64 / span_s)
+    });
+    let all: Vec<(&Observation, Facts)> = survey
+        .runs
+        .iter()
+        .zip(lines)
+        .map(|(run, line)| (&**run, Facts { line, ..run.facts }))
+        .collect();
+    let of_effect = |effect: &'static Effect| {
+        let Acts::Record(sees) = effect.acts else { return None };
+        let able: Vec<&Observation> =
+            all.iter().map(|(run, _)| *run).filter(|run| (effect.shows)(&run.at)).collect();
+        let seen: Vec<(&Observation, Seen)> = all
+            .iter()
+            .filter(|(run, _)| (effect.shows)(&run.at))
+            .filter_map(|(run, facts)| Some((*run, sees(facts)?)))
+            .filter(|(_, seen)| matches!(seen.recurs, Some(Recurs::PerFroude(_))))
+            .collect();
+        let seen = one_line(&able, &seen, &|run| [0.0, 0.5 * run.facts.sample_rate_hz])?;
+        let speeds = || seen.iter().map(|(run, _)| run.at.froude);
+        let (slowest, fastest) =
+            (speeds().fold(f64::INFINITY, f64::min), speeds().fold(0.0, f64::max));
+        if seen.len() < RUNS_IN_PROPORTION || fastest < SPEEDS_IN_PROPORTION * slowest {
+            return None;
+        }
+        let log_bayes_factor = seen.iter().map(|(_, seen)| seen.log_bayes_factor).sum();
+        let recurs = seen[0].1.recurs;
+        let seen: Vec<Seen> = seen.into_iter().map(|(_, seen)| seen).collect();
+        let cause = cause(effect, &seen, log_bayes_factor);
+        (log_bayes_factor > SURE).then_some(Found { log_bayes_factor, cause, recurs })
+    };
+    effects::all().iter().find_map(of_effect)
+}
+
 /// The records that show one and the same line, the surest first, if half of those in whose band
-/// it lies do: a line belongs to the chain or the carriage and not to one record.
+/// [Hz] it lies do: a line belongs to the chain or the carriage and not to one record.
 fn one_line<'s>(
     able: &[&Observation],
     seen: &[(&'s Observation, Seen)],
+    band: &dyn Fn(&Observation) -> [f64; 2],
 ) -> Option<Vec<(&'s Observation, Seen)>> {
     let group = |line: Recurs| -> Vec<(&'s Observation, Seen)> {
         let is_same = |(run, seen): &&(&Observation, Seen)| {
@@ -102,7 +160,7 @@ fn one_line<'s>(
     let (line, best) =
         lines.map(|line| (line, group(line))).max_by(|a, b| sum(&a.1).total_cmp(&sum(&b.1)))?;
     let could = |run: &&&Observation| {
-        let [low, high] = run.facts.line_band_hz;
+        let [low, high] = band(run);
         (low..high).contains(&line.frequency_hz(run.at.froude))
     };
     let n_could = able.iter().filter(could).count();

@@ -132,7 +132,7 @@ pub(super) fn told(
     if grown.is_cut_short {
         tracing::warn!("the search for causes was cut short; hint: diagnose fewer runs together");
     }
-    let shown = Shown::of(survey);
+    let shown = Shown::of(survey, &grown.last.fit);
     let is_untold = |left: &Leftover| !shown.tells(survey, &left.run, left.frequency_rad_s);
     let left_before = leftovers(survey, &grown.base.fit);
     let left_after = leftovers(survey, &grown.last.fit);
@@ -146,7 +146,9 @@ pub(super) fn told(
     // What only impossible numbers explain is there all the same.
     let wild = grown.implausible.iter().map(|(_, log)| *log).fold(0.0, f64::max);
     let is_wild = causes.is_empty() && wild > ENTERS_BESIDE;
-    let untold = is_part || is_wild || grown.is_unnamed;
+    // Where the records tell of all that is left, nothing else need be sought.
+    let is_all_told = !shown.is_empty() && !untold_left.iter().any(Leftover::is_structure);
+    let untold = is_part || (is_wild || grown.is_unnamed) && !is_all_told;
     if untold {
         suspects.splice(0..0, causes.drain(..).map(|cause| cause.effect));
     }
