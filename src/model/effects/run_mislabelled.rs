@@ -11,8 +11,9 @@ pub(super) const EFFECT: Effect = Effect {
     id: "run.mislabelled",
     layer: Layer::Instrument,
     equation: "db b1 phi' + dk w^2 phi in this run alone",
+    // `b1` is what the run itself shows: a law of many times as much is as likely as one of none.
     strengths: &[
-        Parameter::new("db", "-", 0.7, [-0.95, 20.0]),
+        Parameter::new("db", "-", 0.7, [-20.0, 2.0]),
         Parameter::new("dk", "-", 0.1, [-0.5, 2.0]),
     ],
     shapes: &[],
