@@ -15,8 +15,12 @@ const NEAR_TOP: f64 = 0.97;
 
 /// The level at which readings stop: repeated to the last digit in spite of the noise, or two or
 /// more crests flat, or one without doubt.
-pub(super) fn clip(roll: &Series, rolling_rad_s: f64) -> Option<Clip> {
-    stuck(&roll.value).or_else(|| flat_crests(roll, rolling_rad_s))
+///
+/// A model held beyond the range is seen in what was read before the run, and a roll that soon
+/// fades may show nothing else.
+pub(super) fn clip(before: &Series, roll: &Series, rolling_rad_s: f64) -> Option<Clip> {
+    let all = [&before.value[..], &roll.value].concat();
+    stuck(&all).or_else(|| flat_crests(roll, rolling_rad_s))
 }
 
 /// Readings in a row that noise would never leave alike, at the end of what the channel reads.
@@ -134,9 +138,23 @@ mod tests {
     }
 
     #[test]
+    fn a_model_held_beyond_the_range_is_seen_before_it_is_let_go() {
+        // Read within the range from the release on, as a strongly damped roll is.
+        let roll = decay(1.0);
+        let noise = |i: usize| 8e-4 * (((i * 7919) % 1000) as f64 / 500.0 - 1.0);
+        let held = |level_rad: f64, end_rad: f64| Series {
+            time_s: (0..600).map(|i| f64::from(i) * 0.01 - 6.0).collect(),
+            value: (0..600).map(|i| (level_rad + noise(i)).min(end_rad)).collect(),
+        };
+        assert_eq!(clip(&held(0.3, 1.0), &roll, 6.9), None);
+        let found = clip(&held(0.3, 0.28), &roll, 6.9).expect("readings that stick");
+        assert!((found.level_rad - 0.28).abs() < 5e-3, "{found:?}");
+    }
+
+    #[test]
     fn cut_crests_are_seen_with_their_level_and_round_ones_are_not() {
-        assert_eq!(clip(&decay(1.0), 6.9), None);
-        let found = clip(&decay(0.2), 6.9).expect("flat crests");
+        assert_eq!(clip(&Series::default(), &decay(1.0), 6.9), None);
+        let found = clip(&Series::default(), &decay(0.2), 6.9).expect("flat crests");
         assert!((found.level_rad - 0.2).abs() < 5e-4, "{found:?}");
     }
 }

@@ -10,16 +10,17 @@ use crate::model::{Scope, effects};
 
 /// Least logarithm of a Bayes factor at which an effect may enter beside another: no form fits the
 /// first to the last digit.
-pub(super) const ENTERS_BESIDE: f64 = 12.0;
+pub(super) const ENTERS_BESIDE: f64 = 10.0;
 /// Share of what is left for sure that an effect must take away to enter.
 const ENOUGH: f64 = 0.2;
-/// Share of what an approximate effect removes that it may leave of itself: no other effect.
+/// Share of what an approximate effect removes, and of its evidence, that it may leave of itself:
+/// no other effect.
 const CRUMB: f64 = 0.03;
 /// The same for an effect that each run has of its own, which takes up much of anything.
 const CRUMB_OF_EACH_RUN: f64 = 0.25;
 /// What an effect takes of what is left, over the logarithm of its Bayes factor, where that is
 /// what speaks for it; it would be two if nothing else did.
-const OF_LEFTOVER: f64 = 0.5;
+const OF_LEFTOVER: f64 = 1.0;
 /// Share of the evidence of an effect below which another may be a want of its form.
 pub(super) const CRUMB_OF_EVIDENCE: f64 = 0.01;
 
@@ -102,11 +103,12 @@ fn is_crumb_of(known: &Entered, newest: &Entered, settled: &Settled) -> bool {
     let is_of_each_run =
         settled.fit.extensions.last().is_some_and(|one| one.effect.scope == Scope::Run);
     let is_little = newest.log_bayes_factor < CRUMB_OF_EVIDENCE * known.log_bayes_factor;
+    let is_small = newest.log_bayes_factor < CRUMB * known.log_bayes_factor;
     let share = if is_of_each_run { CRUMB_OF_EACH_RUN } else { CRUMB };
     let is_of_form = is_approximate(known.id)
         && (is_of_leftover(newest.removed, newest.log_bayes_factor)
             || is_of_one_layer(known, newest))
-        && (newest.removed < share * known.removed || is_little);
+        && (newest.removed < share * known.removed && (is_of_each_run || is_small) || is_little);
     is_of_form || (is_of_each_run && is_little)
 }
 

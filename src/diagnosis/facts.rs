@@ -15,8 +15,9 @@ fn fourth_differences(v: &[f64]) -> Vec<f64> {
     v.windows(5).map(|v| v[0] - 4.0 * v[1] + 6.0 * v[2] - 4.0 * v[3] + v[4]).collect()
 }
 
-/// Facts of a roll record as recorded.
+/// Facts of a roll record as recorded, and of what was read before it.
 pub(super) fn of(
+    before: &Series,
     roll: &Series,
     quantum_rad: Option<f64>,
     rolling_rad_s: f64,
@@ -27,7 +28,7 @@ pub(super) fn of(
     let lowest_hz = (5.0 * rolling_rad_s / std::f64::consts::TAU).max(3.5);
     let line = line(&roll.value, sample_rate_hz, lowest_hz, rolling_rad_s / std::f64::consts::TAU);
     let line_band_hz = [lowest_hz, 0.5 * sample_rate_hz];
-    let clip = clipping::clip(roll, rolling_rad_s);
+    let clip = clipping::clip(before, roll, rolling_rad_s);
     Facts { quantum_rad, line, line_band_hz, n_samples: n, sample_rate_hz, froude, clip }
 }
 

@@ -31,6 +31,7 @@ mod run_fit;
 mod scatter;
 mod score;
 mod settle;
+mod shaking;
 mod solve;
 mod spectrum;
 mod survey;

@@ -166,7 +166,7 @@ impl Observation {
         let moment_noise =
             if moment.value.is_empty() { 1.0 } else { facts::rough_noise(&moment.value) };
         let quantum_rad = record.quantum_rad;
-        let facts = facts::of(&run.run.roll, quantum_rad, rolling_rad_s, run.froude);
+        let facts = facts::of(&run.run.lead, &run.run.roll, quantum_rad, rolling_rad_s, run.froude);
         let lead = lead(&run.run, record, rolling_rad_s);
         Self {
             id: run.id.clone(),

@@ -29,10 +29,17 @@ impl Shown {
     /// the carriage runs.
     pub(super) fn of(survey: &Survey, fit: &Fit) -> Self {
         let mut found = found(survey);
-        if !found.iter().any(|found| matches!(found.recurs, Some(Recurs::PerFroude(_)))) {
+        let is_proportional = |found: &Found| matches!(found.recurs, Some(Recurs::PerFroude(_)));
+        if !found.iter().any(is_proportional) {
             found.extend(found_left(survey, fit));
         }
         Self(found)
+    }
+
+    /// The line that goes with the speed.
+    pub(super) fn in_proportion(&self) -> Option<Recurs> {
+        let mut lines = self.0.iter().filter_map(|found| found.recurs);
+        lines.find(|line| matches!(line, Recurs::PerFroude(_)))
     }
 
     /// Whether the records show anything.

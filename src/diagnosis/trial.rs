@@ -6,7 +6,7 @@ use super::run_fit::ChannelNoise;
 use super::score::Scored;
 use super::settle::{Settled, settle, settle_further};
 use super::survey::{Extension, Fit, Survey};
-use crate::model::{Acts, effects};
+use crate::model::{Acts, Scope, effects};
 
 /// A candidate fitted in full.
 pub(super) struct Tried {
@@ -82,6 +82,10 @@ pub(super) fn with(
 /// Share of its range within which a shape is held at an edge, and would rather be outside.
 const EDGE: f64 = 1e-3;
 
+/// Shares of damping and restoring within which the run of another label would be one of its own:
+/// hulls and speeds that differ by no more are not mistaken for each other. By judgement.
+const ONE_LABEL: [f64; 2] = [0.05, 0.02];
+
 /// Whether the newest effect lies inside its physical range.
 pub(super) fn is_newest_plausible(survey: &Survey, settled: &Settled) -> bool {
     settled.fit.extensions.len().checked_sub(1).is_none_or(|e| is_plausible(survey, settled, e))
@@ -89,11 +93,16 @@ pub(super) fn is_newest_plausible(survey: &Survey, settled: &Settled) -> bool {
 
 /// Whether an effect lies inside its physical range: its strengths as far as their deviations
 /// allow, the shapes of a memory off the edges at which they are held, the frequencies of a wave
-/// among those of the tank. Other shapes may lie at an edge: friction is as sharp as can be.
+/// among those of the tank, a run of another label far enough from its own. Other shapes may lie at an edge: friction is as sharp as can be.
 pub(super) fn is_plausible(survey: &Survey, settled: &Settled, e: usize) -> bool {
     let extension = &settled.fit.extensions[e];
     let layout = Layout::new(survey, &settled.fit);
     let n_strengths = extension.effect.strengths.len();
+    let is_label = |values: &Vec<f64>| values.iter().zip(ONE_LABEL).any(|(v, of)| v.abs() > of);
+    let is_of_few = extension.effect.scope == Scope::OddRun;
+    if is_of_few && !extension.slots.iter().all(is_label) {
+        return false;
+    }
     if log_odds(survey, settled, e, &layout) < 0.0 {
         return false;
     }

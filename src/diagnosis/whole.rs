@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::growth::{Grown, Stem, grow};
 use super::observation::Observation;
 use super::reversed::Reversed;
+use super::shaking;
 use super::survey::{Spent, Survey};
 use super::verdict::{Diagnosis, Verdict, told};
 use crate::campaign::Tank;
@@ -38,8 +39,12 @@ pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
     let tell = &|survey: &Survey, grown: &Grown| told(survey, grown, &reversed, tank);
     let spent = Arc::new(Spent::default());
     let of_one_kind = Parts::of(&runs, &spent);
-    let survey = Survey::new(runs, &spent);
+    let mut survey = Survey::new(runs, &spent);
     let mut grown = grow(&survey, None);
+    if let Some(calm) = shaking::without(&survey, &grown.last.fit) {
+        survey = Survey::new(calm, &spent);
+        grown = grow(&survey, None);
+    }
     let mut together = tell(&survey, &grown);
     if left(&together) > 0.0 {
         for stem in of_one_kind.stems(&survey) {
