@@ -97,17 +97,20 @@ fn prefer_the_part(survey: &Survey, tried: &mut [Tried]) {
 }
 
 /// Whether an effect is what the form of a known one leaves. What makes the runs agree better
-/// takes nothing from what each of them leaves, and is no crumb of that.
+/// takes nothing from what each of them leaves, and is no crumb of that, unless it is that a run
+/// is none of the others'.
 fn is_crumb_of(known: &Entered, newest: &Entered, settled: &Settled) -> bool {
     // What only few runs may have takes up little of anything.
-    let is_of_each_run =
-        settled.fit.extensions.last().is_some_and(|one| one.effect.scope == Scope::Run);
+    let newest_is =
+        |scope| settled.fit.extensions.last().is_some_and(|newest| newest.effect.scope == scope);
+    let is_of_each_run = newest_is(Scope::Run);
     let is_little = newest.log_bayes_factor < CRUMB_OF_EVIDENCE * known.log_bayes_factor;
     let is_small = newest.log_bayes_factor < CRUMB * known.log_bayes_factor;
     let share = if is_of_each_run { CRUMB_OF_EACH_RUN } else { CRUMB };
     let is_of_form = is_approximate(known.id)
         && (is_of_leftover(newest.removed, newest.log_bayes_factor)
-            || is_of_one_layer(known, newest))
+            || is_of_one_layer(known, newest)
+            || newest_is(Scope::OddRun))
         && (newest.removed < share * known.removed && (is_of_each_run || is_small) || is_little);
     is_of_form || (is_of_each_run && is_little)
 }
