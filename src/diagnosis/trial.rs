@@ -93,7 +93,8 @@ pub(super) fn is_newest_plausible(survey: &Survey, settled: &Settled) -> bool {
 
 /// Whether an effect lies inside its physical range: its strengths as far as their deviations
 /// allow, the shapes of a memory off the edges at which they are held, the frequencies of a wave
-/// among those of the tank, a run of another label far enough from its own. Other shapes may lie at an edge: friction is as sharp as can be.
+/// among those of the tank, a run of another label far enough from its own. Other shapes may lie
+/// at an edge: friction is as sharp as can be.
 pub(super) fn is_plausible(survey: &Survey, settled: &Settled, e: usize) -> bool {
     let extension = &settled.fit.extensions[e];
     let layout = Layout::new(survey, &settled.fit);

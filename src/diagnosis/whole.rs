@@ -101,7 +101,7 @@ fn explained(
     let ways: [&dyn Fn() -> Option<Diagnosis>; 4] = [&first, &second, &third, &fourth];
     let mut best: Option<Diagnosis> = None;
     for way in ways {
-        if best.as_ref().is_some_and(|best| left(best) <= 0.0) || whole.is_spent() {
+        if best.as_ref().is_some_and(|best| left(best) <= 0.0 || whole.is_spent()) {
             break;
         }
         let Some(other) = way() else { continue };
