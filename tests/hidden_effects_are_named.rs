@@ -201,6 +201,39 @@ fn a_second_cause_is_found_beside_one_that_fills_the_record() {
 }
 
 #[test]
+fn a_carriage_that_shakes_the_model_is_named_and_hides_no_other_cause() {
+    // Bilge keels leave little of a roll but the shaking, which lies among its harmonics.
+    let told = outcome(RunSet::Speeds, "tank.carriage_vibration", 2.0, 763);
+    assert_eq!(told, Outcome::Named);
+    let hidden = ["damping.quadratic", "tank.carriage_vibration"];
+    let (_, verdict) = diagnosed(RunSet::Speeds, &hidden, 2.0, 3949);
+    let told: Vec<&str> = verdict.causes.iter().map(|cause| cause.effect.as_str()).collect();
+    assert_eq!(told, hidden);
+}
+
+#[test]
+fn a_load_cell_that_creeps_since_the_model_was_at_rest_brings_no_wrong_zero() {
+    let seed = drawn_seed("creeping load cell");
+    let told = outcome(RunSet::Forced, "instrument.force_drift", 2.0, seed);
+    assert_eq!(told, Outcome::Named);
+}
+
+#[test]
+fn the_end_of_a_range_is_seen_where_the_model_was_held_beyond_it() {
+    // No crest after the release reaches as far.
+    let told = outcome(RunSet::Rest, "instrument.clipping", 0.5, 760);
+    assert_eq!(told, Outcome::Named);
+}
+
+#[test]
+fn a_class_is_parted_once_another_cause_is_known_that_hid_the_difference() {
+    let hidden = ["inertia.amplitude", "damping.displacement_weighted"];
+    let (_, verdict) = diagnosed(RunSet::Forced, &hidden, 2.0, 3830);
+    let told: Vec<&str> = verdict.causes.iter().map(|cause| cause.effect.as_str()).collect();
+    assert_eq!((verdict.word.as_str(), told), ("named", hidden.to_vec()));
+}
+
+#[test]
 fn a_heel_is_told_from_a_wrong_zero_by_a_damping_that_knows_the_angle() {
     let hidden = ["restoring.heel", "damping.displacement_weighted"];
     let (_, verdict) = diagnosed(RunSet::Rest, &hidden, 2.0, drawn_seed("heel and damping"));
