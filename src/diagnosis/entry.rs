@@ -109,10 +109,10 @@ fn is_crumb_of(known: &Entered, newest: &Entered, settled: &Settled) -> bool {
     let share = if is_of_each_run { CRUMB_OF_EACH_RUN } else { CRUMB };
     let is_of_form = is_approximate(known.id)
         && (is_of_leftover(newest.removed, newest.log_bayes_factor)
-            || is_of_one_layer(known, newest)
-            || newest_is(Scope::OddRun))
+            || is_of_one_layer(known, newest))
         && (newest.removed < share * known.removed && (is_of_each_run || is_small) || is_little);
-    is_of_form || (is_of_each_run && is_little)
+    let is_odd_of_form = newest_is(Scope::OddRun) && is_approximate(known.id);
+    is_of_form || ((is_of_each_run || is_odd_of_form) && is_little)
 }
 
 /// Whether two effects are of one layer, where the form of one may want what the other has.
@@ -139,5 +139,5 @@ fn explains_enough(before: &[Leftover], after: &[Leftover], log_bayes_factor: f6
         (all + 1, mended + usize::from(is_mended))
     });
     let gained = (excess(before) - excess(after)).max(2.0 * log_bayes_factor);
-    gained > ENOUGH * excess(before) || 2 * n_mended >= n_sure
+    gained > ENOUGH * sure_excess(before) || 2 * n_mended >= n_sure
 }

@@ -21,6 +21,7 @@ mod layout;
 mod leftover;
 mod next_run;
 mod observation;
+mod onset;
 mod over_scatters;
 mod partial;
 mod plan;

@@ -2,6 +2,7 @@
 
 use super::cores;
 use super::layout::Layout;
+use super::onset;
 use super::run_fit::ChannelNoise;
 use super::score::Scored;
 use super::settle::{Settled, settle, settle_further};
@@ -28,7 +29,8 @@ pub(super) fn fit_all(
     let mut tried = cores::each(scores.len(), |k| {
         let extension = scores[k].extension.clone();
         let id = extension.effect.id;
-        Tried { settled: settle(survey, with(survey, &current.fit, extension, noise), noise), id }
+        let settled = settle(survey, with(survey, &current.fit, extension, noise), noise);
+        Tried { settled: onset::placed(survey, settled, noise), id }
     });
     let logs = tried.iter().map(|one| one.settled.log_evidence);
     let best = logs.fold(f64::NEG_INFINITY, f64::max);

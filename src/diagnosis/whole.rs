@@ -58,7 +58,11 @@ pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
     }
     let explained =
         if whole.is_empty() { None } else { explained(whole, &survey, &grown, &of_one_kind, tell) };
-    Some(explained.unwrap_or(together))
+    // What names more of what the runs alone show is better than what explains what came after.
+    let names_more = |whole: &Diagnosis| {
+        together.verdict == Verdict::Unexplained || whole.causes.len() >= together.causes.len()
+    };
+    Some(explained.filter(names_more).unwrap_or(together))
 }
 
 /// Share of what one diagnosis leaves that a better one may; by judgement.

@@ -22,6 +22,8 @@ pub struct Parameter {
     pub range: [f64; 2],
     /// What the tank says of its value; none where it may be any in its range.
     pub odds: Option<Odds>,
+    /// Whether it is an instant at which the effect sets in at once, so that readings jump.
+    pub is_instant: bool,
 }
 
 impl Parameter {
@@ -32,7 +34,13 @@ impl Parameter {
         typical: f64,
         range: [f64; 2],
     ) -> Self {
-        Self { symbol, unit, typical, range, odds: None }
+        Self { symbol, unit, typical, range, odds: None, is_instant: false }
+    }
+
+    /// The same where it is an instant at which the effect sets in at once.
+    #[must_use]
+    pub const fn at_once(self) -> Self {
+        Self { is_instant: true, ..self }
     }
 
     /// The same where the tank says which values it may have.

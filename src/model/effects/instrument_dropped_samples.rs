@@ -11,7 +11,7 @@ pub(super) const EFFECT: Effect = Effect {
     layer: Layer::Instrument,
     equation: "phi(t + d) from one instant on",
     strengths: &[Parameter::new("d", "s", 0.03, [0.004, 0.3])],
-    shapes: &[Parameter::new("t0", "s", 0.0, [0.0, 10000.0])],
+    shapes: &[Parameter::new("t0", "s", 0.0, [0.0, 10000.0]).at_once()],
     nodes: onsets,
     scope: Scope::Run,
     shows: any_run,
