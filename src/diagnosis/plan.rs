@@ -33,6 +33,8 @@ const FORCED_FROUDES: [f64; 3] = [0.0, 0.2, 0.4];
 /// Amplitude that may be asked for, over the largest that was rolled: beyond it the law is not
 /// known, nor whether the deck stays dry.
 const REACH: f64 = 1.8;
+/// Amplitude that may be asked for, over the end of the roll channel's range where that was met.
+const WITHIN_RANGE: f64 = 0.95;
 
 /// Every run that the tank allows, with its length [s].
 pub(super) fn plans(tank: &Tank, survey: &Survey) -> Vec<(Plan, f64)> {
@@ -67,7 +69,11 @@ pub(super) fn plans(tank: &Tank, survey: &Survey) -> Vec<(Plan, f64)> {
             }
         }
     }
-    plans.retain(|(plan, _)| plan.amplitude_deg.abs() <= largest_deg.max(4.0));
+    // What a channel cannot read says nothing.
+    let ends = survey.runs.iter().filter_map(|run| run.facts.clip);
+    let end_deg = ends.map(|clip| clip.level_rad.to_degrees()).fold(f64::INFINITY, f64::min);
+    let most_deg = largest_deg.max(4.0).min(WITHIN_RANGE * end_deg);
+    plans.retain(|(plan, _)| plan.amplitude_deg.abs() <= most_deg);
     plans
 }
 

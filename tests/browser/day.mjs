@@ -108,10 +108,15 @@ async function runAppears(page) {
 
 // What is shown, within half of its last digit.
 async function numbersAreTheJsons(page) {
-  const results = await page.evaluate(async () =>
-    (await fetch("/results/identification.json")).json());
-  const rows = await page.$$eval("#runs-table tbody tr", (rows) => rows.map((row) =>
-    [row.cells[0].textContent, row.cells[5].textContent.replaceAll("\u2212", "-")]));
+  let rows, results;
+  // A run may end between a look at the page and one at the results.
+  await until("the runs of the page in the results", async () => {
+    rows = await page.$$eval("#runs-table tbody tr", (rows) => rows.map((row) =>
+      [row.cells[0].textContent, row.cells[5].textContent.replaceAll("\u2212", "-")]));
+    results = await page.evaluate(async () =>
+      (await fetch("/results/identification.json")).json());
+    return rows.every(([id]) => results.runs.some((run) => run.id === id));
+  });
   assert(rows.length > 0);
   for (const [id, shown] of rows) {
     const { b1_per_s: b1 } = results.runs.find((run) => run.id === id);
