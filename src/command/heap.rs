@@ -10,7 +10,8 @@ type Settings = &'static [(&'static str, &'static str)];
 /// One heap for all threads, and none for what is large. The C library gives each thread its own,
 /// and what a diagnosis has let go of then stays with every thread that ever worked on one; and it
 /// learns to keep large series in the heap, where what is kept of a run holds fast what was below
-/// it: a day of them takes more with each run.
+/// it: a day of them takes more with each run. Large is what the library takes for it at first [B];
+/// of what lies free at the end of the heap it keeps the series of a run or two [B].
 pub(super) const OF_A_DAY: Settings = &[
     ("MALLOC_ARENA_MAX", "1"),
     ("MALLOC_MMAP_THRESHOLD_", "131072"),

@@ -46,6 +46,12 @@ pub(super) fn is_form_of(survey: &Survey, wide: &Settled, place: usize, narrow: 
     })
 }
 
+/// The same of the newest effect of a model.
+pub(super) fn is_newest_form_of(survey: &Survey, wide: &Settled, narrow: &str) -> bool {
+    let places = wide.fit.extensions.len();
+    places.checked_sub(1).is_some_and(|newest| is_form_of(survey, wide, newest, narrow))
+}
+
 /// The shapes that the newest effect of a fit leaves open beside a narrower form of it: value and
 /// column of each set; none where it is no wider form.
 pub(super) fn open_shapes(
@@ -80,9 +86,8 @@ pub(super) fn is_same(
     rival: &Settled,
     left: f64,
 ) -> bool {
-    let newest = rival.fit.extensions.len().saturating_sub(1);
-    let narrow = favourite.fit.extensions.last().map_or("", |favourite| favourite.effect.id);
-    if is_form_of(survey, rival, newest, narrow) {
+    let narrow = favourite.fit.extensions.last();
+    if narrow.is_some_and(|narrow| is_newest_form_of(survey, rival, narrow.effect.id)) {
         return false;
     }
     let behind = favourite.log_evidence - rival.log_evidence;

@@ -1,6 +1,6 @@
 //! Whether the best of the effects that were tried may enter the model.
 
-use super::alike::{SAME, contains, is_approximate, is_form_of, is_same};
+use super::alike::{SAME, contains, is_approximate, is_newest_form_of, is_same};
 use super::growth::{ENTERS, Entered, excess, leftovers, sure_excess, sure_share};
 use super::leftover::Leftover;
 use super::settle::Settled;
@@ -9,7 +9,7 @@ use super::trial::Tried;
 use crate::model::{Scope, effects};
 
 /// Least logarithm of a Bayes factor at which an effect may enter beside another: no form fits the
-/// first to the last digit.
+/// first to the last digit. By trial on simulated campaigns, as the shares below.
 pub(super) const ENTERS_BESIDE: f64 = 10.0;
 /// Share of what is left for sure that an effect must take away to enter.
 const ENOUGH: f64 = 0.2;
@@ -87,8 +87,7 @@ pub(super) fn best(
 fn prefer_the_part(survey: &Survey, tried: &mut [Tried]) {
     let Some(first) = tried.first() else { return };
     let least = first.settled.log_evidence - 0.25 * SAME;
-    let newest = first.settled.fit.extensions.len().saturating_sub(1);
-    let is_part = |id| contains(first.id, id) || is_form_of(survey, &first.settled, newest, id);
+    let is_part = |id| contains(first.id, id) || is_newest_form_of(survey, &first.settled, id);
     let part =
         tried[1..].iter().position(|one| one.settled.log_evidence > least && is_part(one.id));
     if let Some(k) = part {

@@ -42,11 +42,6 @@ impl Shown {
         lines.find(|line| matches!(line, Recurs::PerFroude(_)))
     }
 
-    /// Whether the records show anything.
-    pub(super) fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
     /// Whether a line that the records show is what is left at a frequency [rad/s] of a run.
     pub(super) fn tells(&self, survey: &Survey, run: &str, frequency_rad_s: f64) -> bool {
         let Some(run) = survey.runs.iter().find(|observed| observed.id == run) else {

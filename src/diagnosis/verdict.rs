@@ -147,7 +147,8 @@ pub(super) fn told(
     let wild = grown.implausible.iter().map(|(_, log)| *log).fold(0.0, f64::max);
     let is_wild = causes.is_empty() && wild > ENTERS_BESIDE;
     // Where the records tell of all that is left, nothing else need be sought.
-    let is_all_told = !shown.is_empty() && !untold_left.iter().any(Leftover::is_structure);
+    let is_left = |left: &[Leftover]| left.iter().any(Leftover::is_structure);
+    let is_all_told = is_left(&left_after) && !is_left(&untold_left);
     let untold = is_part || (is_wild || grown.is_unnamed) && !is_all_told;
     if untold {
         suspects.splice(0..0, causes.drain(..).map(|cause| cause.effect));

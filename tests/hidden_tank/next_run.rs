@@ -26,7 +26,9 @@ pub(crate) fn towed(campaign: &Campaign, verdict: &Verdict) -> Option<Campaign> 
 pub(crate) fn decides(campaign: &Campaign, verdict: &Verdict, program: &Path) -> Option<bool> {
     let longer = towed(campaign, verdict)?;
     let place = tempfile::tempdir().expect("a place for a campaign");
-    let answer = diagnose(program, &play(&longer, place.path()).folder).ok()?;
+    let Ok(answer) = diagnose(program, &play(&longer, place.path()).folder) else {
+        return Some(false);
+    };
     let asked = &campaign.asked;
     let parts = verdict.json["next_run"]["parts"].as_array()?;
     let is_part = |id: &String| parts.iter().any(|part| part.as_str() == Some(id));

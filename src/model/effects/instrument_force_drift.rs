@@ -23,6 +23,7 @@ pub(super) const EFFECT: Effect = Effect {
     reference: "HBM; OIML R60",
 };
 
+/// `rest` is the time from the model's last rest to time zero.
 fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     p[1] + p[0] * (i.time_s + i.run.since_rest_s) / 20.0
 }

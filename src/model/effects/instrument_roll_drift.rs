@@ -23,6 +23,7 @@ pub(super) const EFFECT: Effect = Effect {
     reference: "sensor data sheets",
 };
 
+/// `rest` is the time from the model's last rest to time zero.
 fn adds<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
     all.iter().map(|i| p[1] + p[0] * (i.time_s + i.run.since_rest_s) / 20.0).collect()
 }
