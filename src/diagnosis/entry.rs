@@ -24,12 +24,6 @@ const OF_LEFTOVER: f64 = 1.0;
 /// Share of the evidence of an effect below which another may be a want of its form.
 pub(super) const CRUMB_OF_EVIDENCE: f64 = 0.01;
 
-/// Share of what is left for sure that an exact effect may leave where it explains it to the last,
-/// and how much that must be, in units of the noise's variance: the want of a form is like no other
-/// effect so closely. By judgement.
-const TO_THE_LAST: f64 = 0.02;
-const MUCH: f64 = 500.0;
-
 /// What becomes of the best effect.
 pub(super) enum Best {
     /// There is none.
@@ -71,11 +65,6 @@ pub(super) fn best(
         .collect();
     let entered = Entered { id: best.id, log_bayes_factor, removed, found, equivalent_to };
     let settled = tried.swap_remove(0).settled;
-    let was_left = sure_excess(&before);
-    let is_to_the_last = was_left > MUCH && sure_excess(&after) < TO_THE_LAST * was_left;
-    if is_to_the_last && !is_approximate(entered.id) {
-        return Best::Enters(settled, entered);
-    }
     if known.iter().any(|known| is_crumb_of(known, &entered, &settled)) {
         Best::IsCrumb(settled, entered)
     } else {

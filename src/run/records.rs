@@ -106,3 +106,23 @@ impl Records {
         self.roll.n_samples().max(drive).max(self.carriage.track.n_samples())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rest_is_known_behind_a_hold_that_a_trembling_hand_breaks() {
+        let mut records = Records::default();
+        for k in 0..1400 {
+            let time_s = f64::from(k) * 0.01;
+            records.push_roll(time_s, if time_s < 6.0 { 0.001 } else { 0.2 });
+        }
+        records.note_still(0.0, 6.0);
+        for k in 7..14 {
+            records.note_still(f64::from(k), f64::from(k) + 0.8);
+        }
+        let still = records.still_before(14.0, 0.0, 0.1).expect("the model was at rest");
+        assert!((still.end_s - 6.0).abs() < 1e-9 && (still.roll_rad - 0.001).abs() < 1e-4);
+    }
+}
