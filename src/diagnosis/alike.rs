@@ -62,7 +62,19 @@ pub(super) fn open_shapes(
     shapes(survey, fit, fit.extensions.len().checked_sub(1)?, narrow)
 }
 
-/// The same of the effect at a place.
+/// Logarithm by which runs must narrow the shapes of the newest effect, that they may say whether it
+/// is a narrower form: to a quarter of what that allows, so that a shape may lie half of it off.
+/// None where it is no wider form.
+pub(super) fn narrowing_wanted(survey: &Survey, wide: &Settled, narrow: &str) -> Option<f64> {
+    let (form, shapes) = open_shapes(survey, &wide.fit, narrow)?;
+    let wanted = shapes.into_iter().map(|(_, column)| {
+        let sd = wide.solution.covariance[column][column].max(0.0).sqrt();
+        (4.0 * sd / form.within).ln()
+    });
+    Some(wanted.fold(0.0, f64::max))
+}
+
+/// The shapes that the effect at a place leaves open beside a narrower form of it.
 fn shapes(
     survey: &Survey,
     fit: &Fit,

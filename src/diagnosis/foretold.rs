@@ -96,13 +96,13 @@ pub(super) fn expected_log_bayes_factor(
     (favourite_id, favourite): (&str, &Fit),
     rival: &Rival,
     plans: &[(Plan, f64)],
-    left: [f64; 2],
+    to_come: [Option<(f64, f64)>; 2],
 ) -> f64 {
     let known = &rival.settled.fit;
     let (mut runs, mut noises) = (Vec::new(), Vec::new());
     let mut starts = vec![known.clone()];
     for (plan, span_s) in plans {
-        let (mut run, state, noise) = plan.observed(survey, favourite, *span_s, left);
+        let (mut run, state, noise) = plan.observed(survey, favourite, *span_s, to_come);
         let truth = with_run(survey, favourite, &run, state.clone());
         let readings = predict(&run, &state, &truth.terms(survey.runs.len()));
         let (roll, moment) = readings.split_at(run.roll_time_s.len());

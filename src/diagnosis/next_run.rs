@@ -1,17 +1,20 @@
 //! Which run would say most: by the expected Bayes factor where causes are undecided, else by what
 //! the law of damping would gain.
 
+use std::sync::Arc;
+
 use super::added::Added;
-use super::alike::open_shapes;
+use super::alike::narrowing_wanted;
 use super::cores;
 use super::foretold::{Rival, expected_log_bayes_factor, grown_survey, with_run};
-use super::growth::{Grown, leftovers};
-use super::plan::{Plan, plans};
-use super::run_fit::summarise;
+use super::growth::Grown;
+use super::observation::Observation;
+use super::plan::{Plan, SAMPLE_S, plans};
+use super::run_fit::{ChannelNoise, summarise};
 use super::score::score;
 use super::settle::settle;
 use super::solve::Joint;
-use super::survey::{Fit, N_LAW, Survey};
+use super::survey::{N_LAW, Survey};
 use super::trial::fit_all;
 use crate::campaign::Tank;
 use crate::run::RunKind;
@@ -54,16 +57,24 @@ fn is_one_in_decays(a: &str, b: &str) -> bool {
     ONE_IN_DECAYS.iter().any(|pair| *pair == [a, b] || *pair == [b, a])
 }
 
-/// Root mean square of what a model leaves of roll [rad] and moment [N m] in a middling run: to
-/// the next run that is noise too.
-fn left_in_channels(survey: &Survey, fit: &Fit) -> [f64; 2] {
-    let all = leftovers(survey, fit);
-    ["roll", "moment"].map(|channel| {
-        let of_channel = all.iter().filter(|left| left.channel == channel);
-        let mut rms: Vec<f64> = of_channel.map(|left| left.rms).collect();
-        rms.sort_by(f64::total_cmp);
-        rms.get(rms.len() / 2).copied().unwrap_or(0.0)
-    })
+/// The noise of roll [rad] and moment [N m] in the middling run, with all that the model leaves of
+/// it and its memory: to the next run that is noise too. None of a moment that no run reads.
+fn noise_to_come(survey: &Survey, noise: &[ChannelNoise]) -> [Option<(f64, f64)>; 2] {
+    let middling = |channel: usize, reads: fn(&Observation) -> bool| {
+        let each = survey.runs.iter().zip(noise).filter(|(run, _)| reads(run));
+        // A memory from one sample to the next is a shorter one where these lie further apart.
+        let of_run = |(run, noise): (&Arc<Observation>, &ChannelNoise)| {
+            let interval_s = run.at.span_s / (run.roll_time_s.len() as f64 - 1.0).max(1.0);
+            let samples = SAMPLE_S / interval_s.max(1e-6);
+            (noise.sd[channel], noise.correlation[channel].powf(samples))
+        };
+        let mut all: Vec<(f64, f64)> = each.map(of_run).collect();
+        // What a slow sine shows is blurred by so much.
+        let blur = |(sd, memory): &(f64, f64)| sd * ((1.0 + memory) / (1.0 - memory)).sqrt();
+        all.sort_by(|a, b| blur(a).total_cmp(&blur(b)));
+        all.get(all.len() / 2).copied()
+    };
+    [middling(0, |_| true), middling(1, |run| run.at.kind == RunKind::Forced && run.at.has_moment)]
 }
 
 /// Expected logarithm of a Bayes factor at which nine runs in ten decide: the misfits of two
@@ -73,6 +84,8 @@ fn left_in_channels(survey: &Survey, fit: &Fit) -> [f64; 2] {
 const DECIDES: f64 = 20.0;
 /// What a second run must bring to be asked for.
 const WORTH_A_RUN: f64 = 2.0;
+/// The same where the shape of a rival is asked for: a fifth narrower.
+const WORTH_A_RUN_OF_SHAPE: f64 = 0.2;
 
 /// The run that says most.
 pub(super) fn next_run(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<NextRun> {
@@ -123,7 +136,7 @@ fn parting(
     let tried = fit_all(survey, &without, &scored, &grown.noise);
     let rivals_so_far: Vec<Rival> =
         tried.into_iter().map(|one| Rival::new(survey, one.settled)).collect();
-    let left = left_in_channels(survey, &grown.last.fit);
+    let noise = noise_to_come(survey, &grown.noise);
     let only_forced = rivals.iter().any(|rival| is_one_in_decays(favourite, rival));
     let mut plans = plans(tank, survey);
     plans.retain(|(plan, _)| !only_forced || plan.kind == RunKind::Forced);
@@ -133,7 +146,7 @@ fn parting(
         let hardest = cores::each(sets.len(), |k| {
             rivals_so_far
                 .iter()
-                .map(|rival| expected_log_bayes_factor(survey, favourite, rival, &sets[k], left))
+                .map(|rival| expected_log_bayes_factor(survey, favourite, rival, &sets[k], noise))
                 .fold(f64::INFINITY, f64::min)
         });
         let mut best: Option<(f64, Vec<(Plan, f64)>)> = None;
@@ -145,20 +158,24 @@ fn parting(
         best
     };
     let (mut log, mut set) = best_of(plans.iter().map(|plan| vec![*plan]).collect())?;
-    let is_open = |rival: &Rival| open_shapes(survey, &rival.settled.fit, favourite).is_some();
-    let is_shape = rivals_so_far.iter().any(is_open);
-    if log < DECIDES
-        && !is_shape
+    let wanted = |rival: &Rival| narrowing_wanted(survey, &rival.settled, favourite);
+    let narrowing = rivals_so_far.iter().filter_map(wanted).reduce(f64::max);
+    let (enough, worth) = match narrowing {
+        Some(wanted) => (wanted, WORTH_A_RUN_OF_SHAPE),
+        None => (DECIDES, WORTH_A_RUN),
+    };
+    if log < enough
         && let Some((both, couple)) = best_of(couples(&plans, set[0]))
-        && both > log + WORTH_A_RUN
+        && both > log + worth
     {
         (log, set) = (both, couple);
     }
     let w = grown.last.fit.laws[survey.condition_of[0]].numbers[0];
     let what = set.iter().map(|(plan, _)| plan.words(w)).collect::<Vec<_>>().join(" with ");
     let names = rivals.join(", ");
-    let why = if is_shape {
-        format!("{what} tells the shape of {names} best, and whether it is {favourite}")
+    let why = if narrowing.is_some() {
+        let tell = if set.len() > 1 { "tell" } else { "tells" };
+        format!("{what} {tell} the shape of {names} best, and whether it is {favourite}")
     } else {
         let part = if set.len() > 1 { "part" } else { "parts" };
         let doubt = if log < DECIDES { ", which may not decide" } else { "" };
@@ -172,7 +189,7 @@ fn parting(
         run: runs.next()?,
         with: runs.next(),
         parts: std::iter::once(favourite).chain(rivals.iter().copied()).collect(),
-        expected_log_bayes_factor: if is_shape { 0.0 } else { log },
+        expected_log_bayes_factor: if narrowing.is_some() { 0.0 } else { log },
         why,
     })
 }
@@ -205,12 +222,12 @@ fn informing(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<NextRun> {
     };
     let now = volume(&last.solution.covariance);
     let (_, known) = Joint::new(survey, &last.fit, &last.summaries).gathered(&scatter);
-    let left = left_in_channels(survey, &last.fit);
+    let to_come = noise_to_come(survey, &grown.noise);
     let mut plans = plans(tank, survey);
     plans.retain(|(plan, _)| plan.kind == RunKind::Decay && plan.amplitude_deg > 0.0);
     let gains = cores::each(plans.len(), |k| {
         let (plan, span_s) = &plans[k];
-        let (mut run, state, noise) = plan.observed(survey, &last.fit, *span_s, left);
+        let (mut run, state, noise) = plan.observed(survey, &last.fit, *span_s, to_come);
         let fit = with_run(survey, &last.fit, &run, state.clone());
         let terms = fit.terms(survey.runs.len());
         // What it reads does not matter to what it would tell.

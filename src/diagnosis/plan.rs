@@ -27,7 +27,8 @@ const LONGEST_S: f64 = 25.0;
 const SHORTEST_S: f64 = 8.0;
 /// Periods after which a planned rod has settled.
 const PLANNED_START_PERIODS: f64 = 2.0;
-const SAMPLE_S: f64 = 0.02;
+/// Between samples of a run that was not made [s].
+pub(super) const SAMPLE_S: f64 = 0.02;
 /// Froude numbers at which the rod may be asked for [-].
 const FORCED_FROUDES: [f64; 3] = [0.0, 0.2, 0.4];
 /// Amplitude that may be asked for, over the largest that was rolled: beyond it the law is not
@@ -103,13 +104,14 @@ impl Plan {
         )
     }
 
-    /// The run as it would be observed under a fit, without noise.
+    /// The run as it would be observed under a fit, without the noise that it is weighed by:
+    /// standard deviation and correlation of neighbours in roll and moment.
     pub(super) fn observed(
         &self,
         survey: &Survey,
         fit: &Fit,
         span_s: f64,
-        left: [f64; 2],
+        to_come: [Option<(f64, f64)>; 2],
     ) -> (Observation, RunState, ChannelNoise) {
         let like = &survey.runs[0];
         let law = &fit.laws[survey.condition_of[0]];
@@ -144,15 +146,12 @@ impl Plan {
         (base.natural_rad_s, base.b1_per_s, base.b3_s) = (w, b1, b3);
         base.log_scale = fit.log_scale;
         let state = RunState { own, base };
-        let known =
-            survey.runs.iter().find(|run| run.at.has_moment && run.at.kind == RunKind::Forced);
         let stiffness = at.inertia_kg_m2 * w * w;
         // A load cell resolves about a thousandth of the model's moment at half a radian.
-        let moment_sd = known.map_or(6e-4 * stiffness, |run| run.rough_noise[1]);
-        let noise = ChannelNoise {
-            sd: [like.rough_noise[0].max(left[0]), moment_sd.max(left[1])],
-            correlation: [0.0; 2],
-        };
+        let unheard = [like.rough_noise[0], 6e-4 * stiffness];
+        let heard = [0, 1].map(|channel| to_come[channel].unwrap_or((unheard[channel], 0.0)));
+        let noise =
+            ChannelNoise { sd: heard.map(|(sd, _)| sd), correlation: heard.map(|(_, rho)| rho) };
         (run, state, noise)
     }
 }
