@@ -7,6 +7,8 @@ use super::browser;
 
 #[test]
 fn the_demo_reports_the_papers_campaign_in_a_folder_of_its_own_and_shows_it_meanwhile() {
+    // The day does not wait until a browser is installed.
+    browser::set();
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("rolltank-demo")).unwrap();
     let mut demo = Command::new(env!("CARGO_BIN_EXE_rolltank"))

@@ -15,6 +15,11 @@ struct Stage {
     packages: PathBuf,
 }
 
+/// Sets the stage before a story whose tank does not wait for it.
+pub(crate) fn set() {
+    stage();
+}
+
 /// Set up once, however many stories want it at once.
 fn stage() -> &'static Stage {
     static STAGE: OnceLock<Stage> = OnceLock::new();

@@ -11,6 +11,7 @@ use super::{Axis, Figure, Mark, Panel, axis, draw, label_of, notation};
 pub(super) const UNITS: i32 = 10;
 
 const WIDTH: i32 = 720;
+/// Room on the left for labels of an axis and its ticks that are not wide.
 const LEFT: i32 = 66;
 const RIGHT: i32 = 16;
 const RIGHT_WITH_SCALE: i32 = 66;
@@ -21,6 +22,12 @@ const LEGEND_ROW: i32 = 19;
 const SWATCH: i32 = 24;
 const FONT_PX: f64 = 12.0;
 const LETTER_PX: f64 = 0.56 * FONT_PX;
+/// Width of a digit in the widest of the usual fonts, `DejaVu` Sans.
+const DIGIT_PX: f64 = 0.65 * FONT_PX;
+/// Between the lines of an upright label.
+const UPRIGHT_ROW: i32 = 14;
+/// Between tick labels and the frame.
+const TO_TICK: i32 = 6;
 
 pub(super) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub(super) type Plane<'a> =
@@ -71,10 +78,11 @@ fn draw_all(canvas: &Canvas, figure: &Figure, rows: &[Vec<&Mark>], top: i32) -> 
     let right = WIDTH - if scaled { RIGHT_WITH_SCALE } else { RIGHT };
     let xs = figure.panels.iter().flat_map(|panel| &panel.marks).flat_map(draw::xs);
     let (x_lo, x_hi) = figure.x.range(xs);
-    let mut place = Place { left: LEFT, top, right, bottom: top };
+    let left = figure.panels.iter().map(left_of).fold(LEFT, i32::max);
+    let mut place = Place { left, top, right, bottom: top };
     for (index, panel) in figure.panels.iter().enumerate() {
         place.bottom = place.top + panel.height_px;
-        let (y_lo, y_hi) = panel.y.range(panel.marks.iter().flat_map(draw::ys));
+        let (y_lo, y_hi) = y_range(panel);
         let plane = canvas.apply_coord_spec(Cartesian2d::new(
             x_lo..x_hi,
             y_lo..y_hi,
@@ -95,6 +103,24 @@ fn draw_all(canvas: &Canvas, figure: &Figure, rows: &[Vec<&Mark>], top: i32) -> 
     legend(canvas, rows)
 }
 
+fn y_range(panel: &Panel) -> (f64, f64) {
+    panel.y.range(panel.marks.iter().flat_map(draw::ys))
+}
+
+/// Ticks of the vertical axis of a panel.
+fn y_ticks(lo: f64, hi: f64, height_px: i32) -> Vec<(f64, String)> {
+    axis::ticks(lo, hi, (height_px / 27).clamp(3, 9) as usize)
+}
+
+/// Where a panel begins, so that no tick label reaches the label of its axis.
+fn left_of(panel: &Panel) -> i32 {
+    let (lo, hi) = y_range(panel);
+    let ticks = y_ticks(lo, hi, panel.height_px);
+    let n_digits = ticks.iter().map(|(_, label)| label.chars().count()).max().unwrap_or(0);
+    let n_rows = panel.y.label().lines().count() as i32;
+    4 + UPRIGHT_ROW * n_rows + 2 + (n_digits as f64 * DIGIT_PX) as i32 + TO_TICK
+}
+
 fn middle(place: Place) -> i32 {
     i32::midpoint(place.left, place.right)
 }
@@ -103,7 +129,6 @@ fn middle(place: Place) -> i32 {
 fn grid(canvas: &Canvas, plane: &Plane, place: Place, last: bool) -> Drawn {
     let faint = RGBColor(225, 225, 225).stroke_width(UNITS as u32 * 8 / 10);
     let (x, y) = (plane.get_x_range(), plane.get_y_range());
-    let n_rows = ((place.bottom - place.top) / 27).clamp(3, 9) as usize;
     for (value, label) in axis::ticks(x.start, x.end, 9) {
         plane.draw(&PathElement::new(vec![(value, y.start), (value, y.end)], faint))?;
         if last {
@@ -111,10 +136,10 @@ fn grid(canvas: &Canvas, plane: &Plane, place: Place, last: bool) -> Drawn {
             text(canvas, &label, at / UNITS, place.bottom + 6, HPos::Center)?;
         }
     }
-    for (value, label) in axis::ticks(y.start, y.end, n_rows) {
+    for (value, label) in y_ticks(y.start, y.end, place.bottom - place.top) {
         plane.draw(&PathElement::new(vec![(x.start, value), (x.end, value)], faint))?;
         let at = plane.map_coordinate(&(x.start, value)).1;
-        text_at(canvas, &label, (place.left - 6, at / UNITS), HPos::Right, VPos::Center)?;
+        text_at(canvas, &label, (place.left - TO_TICK, at / UNITS), HPos::Right, VPos::Center)?;
     }
     Ok(())
 }
@@ -146,7 +171,7 @@ fn upright(canvas: &Canvas, axis: &Axis, left: i32, place: Place) -> Drawn {
     let style = style.pos(Pos::new(HPos::Center, VPos::Top));
     let centre = i32::midpoint(place.top, place.bottom) * UNITS;
     for (row, line) in axis.label().lines().enumerate() {
-        let at = ((left + 14 * row as i32) * UNITS, centre);
+        let at = ((left + UPRIGHT_ROW * row as i32) * UNITS, centre);
         canvas.draw(&Text::new(line.to_owned(), at, style.clone()))?;
     }
     Ok(())
