@@ -43,6 +43,8 @@ fn devices_and_check_tell_who_answers_and_what_it_reads() {
         "{}",
         told.out
     );
+    // Its lines carry readings alone.
+    assert!(told.out.contains("carriage (115200 8N1): cannot say who it is\n"), "{}", told.out);
     let list = rolltank(tank.path(), &["devices"]);
     assert!(list.out.contains("mantracourt-dsc"), "{}", list.out);
 }
@@ -95,6 +97,13 @@ fn mistakes_between_devices_are_all_told_at_once_with_their_lines() {
         .unwrap();
     let told = rolltank(folder.path(), &["check", "."]);
     assert_eq!(told.exit, 2, "{}", told.err);
+    let named = CAMPAIGN.replace("PORTS/carriage\"", "/dev/x\"\nidentity = \"VBW\"");
+    std::fs::write(folder.path().join("campaign.toml"), named).unwrap();
+    let unasked = rolltank(folder.path(), &["check", "."]);
+    let words =
+        "campaign.toml:22: device \"carriage\": identity is \"VBW\", but driver \"text-line\"";
+    assert!(unasked.exit == 2 && unasked.err.contains(words), "{}", unasked.err);
+    assert!(unasked.err.contains("hint: give settings.identify"), "{}", unasked.err);
     for words in [
         "campaign.toml:22: no profile is called \"arduino-txt\"",
         "roll is mapped twice: by device \"potentiometer\" and by device \"copy\"",

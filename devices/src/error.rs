@@ -176,6 +176,32 @@ pub enum InstrumentError {
         /// What it said.
         seen: String,
     },
+    /// The instrument talks, but not about itself.
+    #[error("device \"{device}\": port \"{}\" brings readings but does not say who it is, asked \
+        \"{request}\", expected is \"{expected}\"", port.display())]
+    NotSaid {
+        /// The device.
+        device: String,
+        /// Its port.
+        port: PathBuf,
+        /// Part of what it should say.
+        expected: String,
+        /// The question.
+        request: String,
+    },
+    /// An identity that is to be compared with nothing.
+    #[error(
+        "device \"{device}\": identity is \"{expected}\", but driver \"{driver}\" with these \
+        settings has no way to ask the instrument who it is"
+    )]
+    CannotAsk {
+        /// The device.
+        device: String,
+        /// Its driver.
+        driver: String,
+        /// Part of what it should say.
+        expected: String,
+    },
     /// The instrument refuses a request.
     #[error("device \"{device}\": port \"{}\" refuses \"{request}\": \"{reply}\"", port.display())]
     Refused {
@@ -216,6 +242,8 @@ impl InstrumentError {
             | Self::Garbage { device, .. }
             | Self::Silent { device, .. }
             | Self::WrongDevice { device, .. }
+            | Self::NotSaid { device, .. }
+            | Self::CannotAsk { device, .. }
             | Self::Refused { device, .. }
             | Self::Unasked { device, .. } => Some(device),
             Self::PortTwice { second, .. }

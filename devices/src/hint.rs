@@ -45,6 +45,15 @@ impl InstrumentError {
             Self::WrongDevice { .. } => {
                 "another instrument hangs on this port: exchange the cables or the ports".to_owned()
             }
+            Self::NotSaid { .. } => {
+                "another instrument may hang on this port: look at its label; one that cannot say \
+                 who it is needs a [[device]] without identity"
+                    .to_owned()
+            }
+            Self::CannotAsk { driver, .. } => match crate::driver::driver(driver) {
+                Some(entry) => format!("{}, or drop identity", entry.asks),
+                None => return None,
+            },
             Self::Refused { .. } => {
                 "compare the settings with the instrument's own; a password may protect it"
                     .to_owned()

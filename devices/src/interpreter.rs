@@ -250,7 +250,7 @@ impl Interpreter {
                 Decoded::Damaged { .. } => self.count(|_| true, |counts| counts.damaged += 1),
                 Decoded::Refused { .. } | Decoded::Unasked { .. } => {}
             }
-            self.troubles.decoded(what);
+            self.troubles.decoded(what, at_ns);
         }
         out.extend(self.troubles.take(at_ns).into_iter().map(InstrumentEvent::Trouble));
     }

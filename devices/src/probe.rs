@@ -16,6 +16,8 @@ use crate::{Quality, Quantity};
 pub struct ProbeReport {
     /// Whether its port could be opened.
     pub linked: bool,
+    /// Whether its driver has a way to ask it who it is.
+    pub asks_who: bool,
     /// What it says it is, where it can.
     pub identity: Option<String>,
     /// Each channel's last sample, rate and counts.
@@ -49,8 +51,13 @@ pub fn probe(
     clock: &Arc<dyn Clock>,
 ) -> Result<ProbeReport, InstrumentError> {
     let mut instrument = Instrument::start(config, Arc::clone(clock))?;
-    let mut report =
-        ProbeReport { linked: false, identity: None, channels: Vec::new(), troubles: Vec::new() };
+    let mut report = ProbeReport {
+        linked: false,
+        asks_who: config.protocol()?.asks_who(),
+        identity: None,
+        channels: Vec::new(),
+        troubles: Vec::new(),
+    };
     let mut heard: Vec<(Quantity, Heard)> =
         config.channels.iter().map(|channel| (channel.quantity, Heard::default())).collect();
     let until_ns = clock.now_ns().saturating_add(duration_ns);

@@ -142,6 +142,10 @@ impl DeviceConfig {
             return number(what, value, "a positive number");
         }
         let protocol = self.protocol()?;
+        if let Some(expected) = self.identity.clone().filter(|_| !protocol.asks_who()) {
+            let driver = self.driver.clone();
+            return Err(InstrumentError::CannotAsk { device: device(), driver, expected });
+        }
         let fields = protocol.fields();
         if self.channels.is_empty() {
             return Err(InstrumentError::NoChannels { device: device() });

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::driver::{Decoded, shown};
+use crate::driver::{Decoded, Purpose, shown};
 use crate::error::InstrumentError;
 use crate::setup::DeviceConfig;
 
@@ -12,6 +12,9 @@ const GARBAGE_BYTES: u64 = 64;
 const GARBAGE_NS: u64 = 1_000_000_000;
 /// Requests in a row without an answer, before silence is told.
 const SILENT_REQUESTS: u32 = 5;
+/// An instrument that talks has so long [ns] to say who it is after the question has got no answer:
+/// a board that its port resets says so when it has started.
+const NAMELESS_NS: u64 = 1_500_000_000;
 /// Weight of answers that nobody asked for, before they are told.
 const UNASKED_MAX: u32 = 6;
 /// Weight of one of them; every answer that was asked for takes one off.
@@ -23,6 +26,8 @@ pub(crate) struct Troubles {
     port: PathBuf,
     line: String,
     identity: Option<String>,
+    /// Since when, and on which question, it has not said who it is.
+    nameless: Option<(u64, String)>,
     opened_ns: u64,
     n_bytes: u64,
     n_frames: u64,
@@ -46,6 +51,7 @@ impl Troubles {
             port: config.port.clone(),
             line: config.line.name(),
             identity: config.identity.clone(),
+            nameless: None,
             opened_ns: 0,
             n_bytes: 0,
             n_frames: 0,
@@ -61,6 +67,7 @@ impl Troubles {
 
     pub(crate) fn opened(&mut self, at_ns: u64) {
         self.opened_ns = at_ns;
+        self.nameless = None;
         self.n_bytes = 0;
         self.n_frames = 0;
         self.silent.fill(0);
@@ -78,7 +85,7 @@ impl Troubles {
         }
     }
 
-    pub(crate) fn decoded(&mut self, what: &Decoded) {
+    pub(crate) fn decoded(&mut self, what: &Decoded, at_ns: u64) {
         let (device, port) = (self.device.clone(), self.port.clone());
         match what {
             Decoded::Values { values, .. } => {
@@ -94,11 +101,15 @@ impl Troubles {
             }
             Decoded::Identity(seen) => {
                 self.n_frames += 1;
+                self.nameless = None;
                 let expected = self.identity.clone();
                 if let Some(expected) = expected.filter(|expected| !seen.contains(expected)) {
                     let seen = seen.clone();
                     self.once(InstrumentError::WrongDevice { device, port, expected, seen });
                 }
+            }
+            Decoded::Silent { request, purpose: Purpose::Identify, .. } => {
+                self.nameless.get_or_insert_with(|| (at_ns, request.clone()));
             }
             Decoded::Silent { request, fields, .. } => self.no_answer(request, fields),
             Decoded::Unasked { seen } => {
@@ -157,6 +168,20 @@ impl Troubles {
                 line: self.line.clone(),
                 n_bytes: self.n_bytes,
                 seen: self.seen.clone(),
+            });
+        }
+        // One that says nothing at all is told as silent.
+        let talks = self.n_frames > 0 && self.silent.iter().all(|silent| *silent == 0);
+        let late = |since_ns: u64| now_ns.saturating_sub(since_ns) >= NAMELESS_NS;
+        if let (Some(expected), Some((since_ns, request))) = (&self.identity, &self.nameless)
+            && talks
+            && late(*since_ns)
+        {
+            self.once(InstrumentError::NotSaid {
+                device: self.device.clone(),
+                port: self.port.clone(),
+                expected: expected.clone(),
+                request: request.clone(),
             });
         }
         std::mem::take(&mut self.found)

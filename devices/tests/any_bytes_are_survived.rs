@@ -120,7 +120,7 @@ fn a_stream_gives_every_frame_after_the_first_that_follows_noise() {
             }
         }
     }
-    assert_eq!(n_streams, 7);
+    assert_eq!(n_streams, 8);
 }
 
 proptest! {

@@ -6,7 +6,7 @@ use devices::port::{Line, Parity};
 use devices::profile::PaceSettings;
 
 /// The settings that the wire stories go through: every driver, in its different forms.
-pub(crate) const FORMS: [(&str, &str); 19] = [
+pub(crate) const FORMS: [(&str, &str); 22] = [
     ("text-line", "pattern = \"$RD,{sequence},{time_us},{0},{1}*{xor}\""),
     ("text-line", "pattern = \"{time_s} {0};{1} {sum}\"\ndecimal_comma = true"),
     ("text-line", "pattern = \"S{0}\"\nrequest = \"SX\\r\\n\""),
@@ -30,6 +30,13 @@ pub(crate) const FORMS: [(&str, &str); 19] = [
     ("hbm-binary", "format = 2"),
     ("hbm-binary", "format = 12\nchecked = true"),
     ("cobs", "fields = 3\nidentify = true"),
+    ("text-line", "pattern = \"S{0}\"\nidentify = \"ID?\\n\"\nidentity_line = \"ID {name}\""),
+    ("mantrabus", "command = 40\nversion_command = 5\nset_up = [{ command = 9, value = 0.5 }]"),
+    (
+        "modbus-rtu",
+        "identify = { function = 17 }\nset_up = [{ station = 1, address = 9, registers = [7] }]\n\
+         [[fields]]\nfunction = 3\naddress = 5\ntype = \"int16\"",
+    ),
 ];
 
 /// A session in conversation.

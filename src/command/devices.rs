@@ -110,7 +110,9 @@ pub(super) fn tell(
     write!(out, "{name} on {} ({})", port.display(), line.name())?;
     match &report.identity {
         Some(identity) => writeln!(out, ": {identity}")?,
-        None => writeln!(out)?,
+        None if !report.linked => writeln!(out)?,
+        None if report.asks_who => writeln!(out, ": does not say who it is")?,
+        None => writeln!(out, ": cannot say who it is")?,
     }
     for ChannelReport { quantity, last, rate_hz, quality, counts } in &report.channels {
         let (name, unit) = (quantity.name(), quantity.unit());
@@ -172,7 +174,7 @@ pub(super) fn report_json(device: &DeviceConfig, report: &ProbeReport) -> Value 
         .collect();
     json!({
         "device": device.name, "port": device.port, "line": device.line.name(),
-        "linked": report.linked, "identity": report.identity,
+        "linked": report.linked, "asks_who": report.asks_who, "identity": report.identity,
         "channels": channels, "troubles": troubles,
     })
 }

@@ -73,6 +73,7 @@ impl MantracourtCells {
                 number(self.value(tag, newest.host_s, faults))
             }
             "SNAP" | "RST" => String::new(),
+            written if written.contains('=') => String::new(),
             _ => "?".to_owned(),
         })
     }
