@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::Quantity;
 use crate::channel::{Channel, Lag};
 use crate::driver::{Protocol, driver};
-use crate::error::InstrumentError;
+use crate::error::{ChannelClaim, InstrumentError};
 use crate::port::{Line, Parity};
 use crate::profile::{PaceSettings, Profile, profile};
 
@@ -200,13 +200,14 @@ pub fn check(setups: &[DeviceSetup]) -> (Vec<DeviceConfig>, Vec<InstrumentError>
 /// Mistakes that take two devices.
 fn between(configs: &[DeviceConfig]) -> Vec<InstrumentError> {
     let mut mistakes = Vec::new();
-    let mut quantities: BTreeMap<Quantity, &str> = BTreeMap::new();
+    let mut quantities: BTreeMap<Quantity, ChannelClaim> = BTreeMap::new();
     for (index, config) in configs.iter().enumerate() {
         for channel in &config.channels {
             let quantity = channel.quantity;
-            if let Some(first) = quantities.insert(quantity, &config.name) {
-                let (first, second) = (first.to_owned(), config.name.clone());
-                mistakes.push(InstrumentError::ChannelTwice { quantity, first, second });
+            let second = claim(config, channel.field);
+            if let Some(first) = quantities.insert(quantity, second.clone()) {
+                let claims = Box::new([first, second]);
+                mistakes.push(InstrumentError::ChannelTwice { quantity, claims });
             }
         }
         for earlier in &configs[..index] {
@@ -219,6 +220,16 @@ fn between(configs: &[DeviceConfig]) -> Vec<InstrumentError> {
         }
     }
     mistakes
+}
+
+fn claim(config: &DeviceConfig, field: usize) -> ChannelClaim {
+    let fields = config.protocol().map(|protocol| protocol.fields()).unwrap_or_default();
+    ChannelClaim {
+        device: config.name.clone(),
+        port: config.port.clone(),
+        field,
+        name: fields.get(field).cloned().unwrap_or_default(),
+    }
 }
 
 /// Two names may lead to one port.

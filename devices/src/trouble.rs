@@ -20,6 +20,9 @@ const UNASKED_MAX: u32 = 6;
 /// Weight of one of them; every answer that was asked for takes one off.
 const UNASKED_WEIGHT: u32 = 2;
 
+/// Damaged answers of one station, less its good ones, before they are told.
+const DAMAGED_MAX: u32 = 5;
+
 /// Watches one link.
 pub(crate) struct Troubles {
     device: String,
@@ -37,6 +40,10 @@ pub(crate) struct Troubles {
     /// The last request without an answer.
     request: Option<String>,
     unasked: u32,
+    /// Bytes that were no answer, since the last question.
+    damage: Option<String>,
+    /// Damaged answers, less the good ones, by field.
+    damaged: Vec<u32>,
     /// Certain, and not yet told.
     found: Vec<InstrumentError>,
     /// Told and not yet over.
@@ -59,6 +66,8 @@ impl Troubles {
             silent: vec![0; n_fields],
             request: None,
             unasked: 0,
+            damage: None,
+            damaged: vec![0; n_fields],
             found: Vec::new(),
             told: Vec::new(),
             silence_told: false,
@@ -73,6 +82,8 @@ impl Troubles {
         self.silent.fill(0);
         self.request = None;
         self.unasked = 0;
+        self.damage = None;
+        self.damaged.fill(0);
         self.found.clear();
         self.told.clear();
         self.silence_told = false;
@@ -91,9 +102,13 @@ impl Troubles {
             Decoded::Values { values, .. } => {
                 self.n_frames += 1;
                 self.unasked = self.unasked.saturating_sub(1);
+                self.damage = None;
                 for value in values {
                     if let Some(silent) = self.silent.get_mut(value.field) {
                         *silent = 0;
+                    }
+                    if let Some(damaged) = self.damaged.get_mut(value.field) {
+                        *damaged = damaged.saturating_sub(1);
                     }
                 }
                 // The next silence is another one.
@@ -109,9 +124,13 @@ impl Troubles {
                 }
             }
             Decoded::Silent { request, purpose: Purpose::Identify, .. } => {
+                self.damage = None;
                 self.nameless.get_or_insert_with(|| (at_ns, request.clone()));
             }
-            Decoded::Silent { request, fields, .. } => self.no_answer(request, fields),
+            Decoded::Silent { request, station, fields, .. } => match self.damage.take() {
+                Some(seen) => self.damaged_answer(request, *station, fields, seen),
+                None => self.no_answer(request, fields),
+            },
             Decoded::Unasked { seen } => {
                 self.unasked += UNASKED_WEIGHT;
                 if self.unasked >= UNASKED_MAX {
@@ -125,7 +144,35 @@ impl Troubles {
                 let (request, reply) = (request.clone(), reply.clone());
                 self.once(InstrumentError::Refused { device, port, request, reply });
             }
-            Decoded::Damaged { .. } | Decoded::Missed { .. } => {}
+            Decoded::Damaged { seen, .. } => self.damage = Some(seen.clone()),
+            Decoded::Missed { .. } => {}
+        }
+    }
+
+    /// On a bus the answers of two stations with one address garble each other.
+    fn damaged_answer(
+        &mut self,
+        request: &str,
+        station: Option<u16>,
+        fields: &[usize],
+        seen: String,
+    ) {
+        let mut most = 0;
+        for field in fields {
+            if let Some(damaged) = self.damaged.get_mut(*field) {
+                *damaged += 1;
+                most = most.max(*damaged);
+            }
+        }
+        if most >= DAMAGED_MAX {
+            self.once(InstrumentError::Collided {
+                device: self.device.clone(),
+                port: self.port.clone(),
+                station,
+                n_answers: most,
+                request: request.to_owned(),
+                seen,
+            });
         }
     }
 
@@ -152,13 +199,20 @@ impl Troubles {
             return;
         }
         self.silence_told = true;
-        let (device, port) = (self.device.clone(), self.port.clone());
-        self.found.push(InstrumentError::Silent { device, port, request: self.request.clone() });
+        self.found.push(InstrumentError::Silent {
+            device: self.device.clone(),
+            port: self.port.clone(),
+            line: self.line.clone(),
+            request: self.request.clone(),
+        });
     }
 
     /// The troubles that are certain by now and were not told before.
     pub(crate) fn take(&mut self, now_ns: u64) -> Vec<InstrumentError> {
+        // Who answers has understood the question, so that its line's settings are right.
+        let answers = self.damaged.iter().any(|damaged| *damaged > 0);
         let garbage = self.n_frames == 0
+            && !answers
             && self.n_bytes >= GARBAGE_BYTES
             && now_ns.saturating_sub(self.opened_ns) >= GARBAGE_NS;
         if garbage {

@@ -13,5 +13,6 @@ mod every_driver_reads_its_instrument;
 mod fast_samples_are_read_without_a_loss;
 mod pymodbus_answers_our_requests;
 mod the_reference_sketch_is_read;
+mod two_share_an_address;
 mod who_answers_is_asked;
 mod wire;

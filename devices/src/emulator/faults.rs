@@ -17,6 +17,8 @@ pub enum Fault {
     DriftPpm(f64),
     /// The input is over-driven.
     Saturate(bool),
+    /// The instrument's line is set to so many bits per second, whatever the port is set to.
+    Baud(u32),
     /// The power fails for a moment: counters start anew.
     Restart,
 }
@@ -33,6 +35,7 @@ pub struct Faults {
     pub(super) drift_ppm: f64,
     pub(super) saturated: bool,
     pub(super) restart: bool,
+    pub(super) baud: Option<u32>,
 }
 
 impl Faults {
@@ -46,6 +49,7 @@ impl Faults {
             Fault::Skip(n_samples) => self.n_skips += n_samples,
             Fault::DriftPpm(drift_ppm) => self.drift_ppm = drift_ppm,
             Fault::Saturate(on) => self.saturated = on,
+            Fault::Baud(baud) => self.baud = Some(baud),
             Fault::Restart => self.restart = true,
         }
     }
