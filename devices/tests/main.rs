@@ -12,6 +12,7 @@ mod clocks_are_known_within_their_bound;
 mod every_driver_reads_its_instrument;
 mod fast_samples_are_read_without_a_loss;
 mod pymodbus_answers_our_requests;
+mod samples_without_a_number_are_missed;
 mod the_reference_sketch_is_read;
 mod two_share_an_address;
 mod who_answers_is_asked;
