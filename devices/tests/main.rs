@@ -10,6 +10,7 @@ mod any_bytes_are_survived;
 mod bench;
 mod clocks_are_known_within_their_bound;
 mod every_driver_reads_its_instrument;
+mod every_emulator_obeys_its_faults;
 mod fast_samples_are_read_without_a_loss;
 mod pymodbus_answers_our_requests;
 mod samples_without_a_number_are_missed;

@@ -59,8 +59,13 @@ pub(crate) fn session(name: &str, settings: &str) -> Session {
 
 impl Wire {
     pub(crate) fn new(name: &str, settings: &str, signal: Signal) -> Self {
+        Self::at_rate(name, settings, 200.0, signal)
+    }
+
+    /// With an instrument that converts so often.
+    pub(crate) fn at_rate(name: &str, settings: &str, rate_hz: f64, signal: Signal) -> Self {
         let table = settings.parse().expect("the settings are good");
-        let emulator = emulator(name, &table, 200.0, signal).expect("the settings are good");
+        let emulator = emulator(name, &table, rate_hz, signal).expect("the settings are good");
         let mut session = session(name, settings);
         session.open(0);
         let faults = Faults::default();

@@ -54,6 +54,20 @@ impl Faults {
         }
     }
 
+    /// Whether the reading that is due is not sent.
+    pub(super) fn skips(&mut self) -> bool {
+        let is_skipped = self.n_skips > 0;
+        self.n_skips = self.n_skips.saturating_sub(1);
+        is_skipped
+    }
+
+    /// Whether the reading that is due is the one before once more.
+    pub(super) fn repeats(&mut self) -> bool {
+        let is_repeated = self.n_repeats > 0;
+        self.n_repeats = self.n_repeats.saturating_sub(1);
+        is_repeated
+    }
+
     /// The value, or one beyond every range when the input is over-driven.
     pub(super) fn limited(&self, raw: f64, limit: f64) -> f64 {
         if self.saturated { limit } else { raw.clamp(-limit, limit) }

@@ -28,7 +28,7 @@ pub(super) fn open(parts: Parts<'_>) -> Opened {
 
 impl MantrabusCells {
     /// The answer to a command; a wrong check sum or another's address is met by silence.
-    fn answer(&mut self, frame: &[u8], now_s: f64, faults: &Faults) -> Option<Vec<u8>> {
+    fn answer(&mut self, frame: &[u8], now_s: f64, faults: &mut Faults) -> Option<Vec<u8>> {
         let (body, sum) = frame[1..].split_at(frame.len() - 3);
         let tag = self.settings.stations.iter().position(|station| *station == body[0])?;
         if *sum != checksum(body) {
@@ -39,7 +39,10 @@ impl MantrabusCells {
         }
         let command = body[1] & !READ;
         let number = if command == self.settings.command {
-            let newest = self.pace.newest(now_s, faults);
+            let newest = self.pace.newest(tag, now_s, faults);
+            if faults.skips() {
+                return None;
+            }
             faults.limited((self.signal)(tag, newest.host_s), 1e6) as f32
         } else if Some(command) == self.settings.version_command {
             VERSION
@@ -65,12 +68,7 @@ impl Emulator for MantrabusCells {
             let n_bytes = if is_read { READ_BYTES } else { WRITE_BYTES };
             if self.heard.len() == n_bytes && self.heard[0] == START {
                 let frame = std::mem::take(&mut self.heard);
-                let answer = self.answer(&frame, now_s, faults);
-                if faults.n_skips > 0 {
-                    faults.n_skips -= 1;
-                } else {
-                    out.extend(answer.into_iter().flatten());
-                }
+                out.extend(self.answer(&frame, now_s, faults).into_iter().flatten());
             }
             self.heard.truncate(WRITE_BYTES);
         }

@@ -54,13 +54,13 @@ impl ModbusTransmitters {
     }
 
     /// The answer to a whole request without its check sum; others' are met by silence.
-    fn answer(&mut self, request: &[u8], now_s: f64, faults: &Faults) -> Option<Vec<u8>> {
+    fn answer(&mut self, request: &[u8], now_s: f64, faults: &mut Faults) -> Option<Vec<u8>> {
         let (station, function) = (request[0], request[1]);
         if !self.settings.fields.iter().any(|field| field.station == station) {
             return None;
         }
         let mut reply = match function {
-            3 | 4 => self.read(request, now_s, faults),
+            3 | 4 => self.read(request, now_s, faults).filter(|_| !faults.skips())?,
             WRITE => request[..6].to_vec(),
             SERVER_ID => [&[station, function, IDENTITY.len() as u8], IDENTITY].concat(),
             _ => vec![station, function | 0x80, ILLEGAL_FUNCTION],
@@ -69,11 +69,12 @@ impl ModbusTransmitters {
         Some(reply)
     }
 
-    fn read(&mut self, request: &[u8], now_s: f64, faults: &Faults) -> Vec<u8> {
+    /// The registers asked for, or that they do not exist.
+    fn read(&mut self, request: &[u8], now_s: f64, faults: &mut Faults) -> Option<Vec<u8>> {
         let (station, function) = (request[0], request[1]);
         let start = u16::from_be_bytes([request[2], request[3]]);
         let n_registers = u16::from_be_bytes([request[4], request[5]]);
-        let host_s = self.pace.newest(now_s, faults).host_s;
+        let host_s = self.pace.newest(usize::from(station), now_s, faults).host_s;
         let mut data = vec![0; 2 * usize::from(n_registers)];
         let mut any = false;
         for (number, field) in self.settings.fields.iter().enumerate() {
@@ -88,11 +89,11 @@ impl ModbusTransmitters {
             }
         }
         if !any || n_registers > 125 {
-            return vec![station, function | 0x80, ILLEGAL_ADDRESS];
+            return Some(vec![station, function | 0x80, ILLEGAL_ADDRESS]);
         }
         let mut reply = vec![station, function, data.len() as u8];
         reply.extend(data);
-        reply
+        Some(reply)
     }
 }
 
@@ -117,12 +118,7 @@ impl Emulator for ModbusTransmitters {
             }
             let body = body.to_vec();
             self.heard.drain(..n_bytes);
-            let answer = self.answer(&body, now_s, faults);
-            if faults.n_skips > 0 {
-                faults.n_skips -= 1;
-            } else {
-                out.extend(answer.into_iter().flatten());
-            }
+            out.extend(self.answer(&body, now_s, faults).into_iter().flatten());
         }
     }
 

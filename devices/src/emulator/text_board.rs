@@ -55,8 +55,10 @@ impl Emulator for TextBoard {
             out.extend_from_slice(self.settings.terminators.as_bytes());
         }
         if is_read {
-            let newest = self.pace.newest(now_s, faults);
-            out.extend(self.line(&newest, faults));
+            let newest = self.pace.newest(0, now_s, faults);
+            if !faults.skips() {
+                out.extend(self.line(&newest, faults));
+            }
         }
         if is_asked || is_read {
             self.heard.clear();
