@@ -1,6 +1,6 @@
 //! A driver's session and its emulator joined without port or clock: thousands of cycles a second.
 
-use devices::driver::{Decoded, FieldValue, Session, driver};
+use devices::driver::{Decoded, FieldValue, Purpose, Session, driver};
 use devices::emulator::{Emulator, Faults, Signal, emulator};
 use devices::port::{Line, Parity};
 use devices::profile::PaceSettings;
@@ -45,6 +45,8 @@ pub(crate) struct Wire {
     emulator: Box<dyn Emulator>,
     pub(crate) faults: Faults,
     pub(crate) now_ns: u64,
+    /// The last turn asked for readings, and the whole answer came.
+    pub(crate) is_answered: bool,
     /// Everything decoded since it was last taken.
     pub(crate) decoded: Vec<Decoded>,
 }
@@ -69,7 +71,7 @@ impl Wire {
         let mut session = session(name, settings);
         session.open(0);
         let faults = Faults::default();
-        Self { session, emulator, faults, now_ns: 0, decoded: Vec::new() }
+        Self { session, emulator, faults, now_ns: 0, is_answered: false, decoded: Vec::new() }
     }
 
     /// One turn: what the host says, and what comes back through `spoil`.
@@ -82,7 +84,12 @@ impl Wire {
             self.emulator.receive(&sent, now_s, &mut self.faults, &mut answer);
         }
         self.emulator.tick(now_s, &mut self.faults, &mut answer);
+        let whole = answer.clone();
         spoil(&mut answer);
+        let cycle = self.session.protocol().cycle();
+        let mut reads = cycle.iter().filter(|request| request.purpose == Purpose::Read);
+        let is_read = reads.any(|request| request.bytes == sent);
+        self.is_answered = is_read && !whole.is_empty() && whole == answer;
         self.now_ns += 2_000_000;
         if !answer.is_empty() {
             self.session.receive(&answer, self.now_ns, &mut self.decoded);
