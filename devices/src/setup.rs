@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Quantity;
 use crate::channel::{Channel, Lag};
-use crate::driver::{Protocol, driver};
+use crate::driver::{Protocol, SettingsError, driver};
 use crate::error::{ChannelClaim, InstrumentError};
 use crate::port::{Line, Parity};
 use crate::profile::{PaceSettings, Profile, profile};
@@ -69,6 +69,38 @@ pub struct DeviceConfig {
 }
 
 impl DeviceSetup {
+    /// An instrument by itself, named by its port, with settings as they stand in an inline table:
+    /// `stations = [2], command = 40`.
+    ///
+    /// # Errors
+    /// [`InstrumentError::Settings`] when that is no inline table.
+    pub fn alone(port: PathBuf, profile: &str, settings: &str) -> Result<Self, InstrumentError> {
+        let name = port.display().to_string();
+        let table = format!("settings = {{ {settings} }}").parse::<toml::Table>();
+        let settings = table.ok().and_then(|mut table| table.remove("settings"));
+        let Some(toml::Value::Table(settings)) = settings else {
+            return Err(InstrumentError::Settings {
+                device: name,
+                driver: profile.to_owned(),
+                source: SettingsError(
+                    "expected NAME = VALUE, NAME = VALUE, as in a campaign file".to_owned(),
+                ),
+            });
+        };
+        Ok(Self {
+            name,
+            profile: profile.to_owned(),
+            port,
+            baud: None,
+            parity: None,
+            pace: None,
+            identity: None,
+            lag: None,
+            settings,
+            channels: Vec::new(),
+        })
+    }
+
     /// Fills up from the named profile, and checks.
     ///
     /// # Errors
@@ -82,12 +114,30 @@ impl DeviceSetup {
     /// # Errors
     /// The first mistake found.
     pub fn resolve_with(&self, profile: &Profile) -> Result<DeviceConfig, InstrumentError> {
+        let config = self.filled_up(profile);
+        config.check(&self.profile)?;
+        config.check_channels()?;
+        Ok(config)
+    }
+
+    /// Fills up from the named profile, and checks all but the channels, of which it may have none:
+    /// who looks at raw fields needs no more.
+    ///
+    /// # Errors
+    /// The first mistake found.
+    pub fn resolve_raw(&self) -> Result<DeviceConfig, InstrumentError> {
+        let config = self.filled_up(&profile(&self.profile)?);
+        config.check(&self.profile)?;
+        Ok(config)
+    }
+
+    fn filled_up(&self, profile: &Profile) -> DeviceConfig {
         let mut line = profile.line;
         line.baud = self.baud.unwrap_or(line.baud);
         line.parity = self.parity.unwrap_or(line.parity);
         let mut settings = profile.settings.clone();
         settings.extend(self.settings.clone());
-        let config = DeviceConfig {
+        DeviceConfig {
             name: self.name.clone(),
             port: self.port.clone(),
             line,
@@ -97,9 +147,7 @@ impl DeviceSetup {
             driver: profile.driver.clone(),
             settings,
             channels: self.channels.clone(),
-        };
-        config.check(&self.profile)?;
-        Ok(config)
+        }
     }
 }
 
@@ -146,7 +194,12 @@ impl DeviceConfig {
             let driver = self.driver.clone();
             return Err(InstrumentError::CannotAsk { device: device(), driver, expected });
         }
-        let fields = protocol.fields();
+        self.check_stations(protocol.stations())
+    }
+
+    fn check_channels(&self) -> Result<(), InstrumentError> {
+        let device = || self.name.clone();
+        let fields = self.protocol()?.fields();
         if self.channels.is_empty() {
             return Err(InstrumentError::NoChannels { device: device() });
         }
@@ -166,7 +219,7 @@ impl DeviceConfig {
                 source,
             })?;
         }
-        self.check_stations(protocol.stations())
+        Ok(())
     }
 
     fn check_stations(&self, mut stations: Vec<u16>) -> Result<(), InstrumentError> {

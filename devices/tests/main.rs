@@ -2,6 +2,7 @@
 
 mod a_cable_is_pulled_and_put_back;
 mod a_late_answer_is_nobodys;
+mod a_reader_is_not_kept_waiting;
 mod a_reader_that_fails_comes_back;
 mod a_replay_gives_the_live_samples_to_the_bit;
 mod a_slow_reader_loses_nothing;
