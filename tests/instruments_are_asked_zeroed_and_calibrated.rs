@@ -55,7 +55,7 @@ fn one_instrument_alone_is_asked_without_a_campaign() {
     let tank = LiveTank::at_speed(1.0);
     let port = tank.port(0).path().display().to_string();
     let ask = |more: &[&str]| {
-        let one = ["devices", "--port", &port, "--profile", "cobs-board", "--seconds", "0.5"];
+        let one = ["devices", "--port", &port, "--profile", "cobs-board", "--seconds", "1.5"];
         rolltank(tank.path(), &[&one[..], more].concat())
     };
     let told = ask(&["--settings", "fields = 1"]);
@@ -67,7 +67,7 @@ fn one_instrument_alone_is_asked_without_a_campaign() {
     let field = &told["devices"][0]["fields"][0];
     assert!(field["raw"].is_f64() && field["rate_hz"].as_f64() > Some(50.0), "{told}");
     // Frames of another length are no frames of this profile.
-    let told = ask(&["--seconds", "2"]);
+    let told = ask(&[]);
     assert!(told.exit == 1 && told.out.contains("field 1 (value 1): no value"), "{}", told.out);
     assert!(told.out.contains("hint: "), "{}", told.out);
     let told = ask(&["--settings", "fields: 1"]);
@@ -149,7 +149,8 @@ fn mistakes_between_devices_are_all_told_at_once_with_their_lines() {
     assert!(unasked.err.contains("hint: give settings.identify"), "{}", unasked.err);
     for words in [
         "campaign.toml:22: no profile is called \"arduino-txt\"",
-        "roll is mapped twice: by device \"potentiometer\" and by device \"copy\"",
+        "roll is mapped twice: by device \"potentiometer\" from field 0 (value 0) of port",
+        "and by device \"copy\" from field 0 (value 0) of port",
         "devices \"potentiometer\" and \"copy\" are both on port",
     ] {
         assert!(told.err.contains(words), "{words} is not in:\n{}", told.err);

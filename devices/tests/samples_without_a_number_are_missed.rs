@@ -19,7 +19,8 @@ const SKIPPED_MS: u64 = 60_000;
 fn record(config: &DeviceConfig, rate_hz: f64, n_skipped: u64) -> Vec<LinkEvent> {
     // Instruments print a few digits, not seventeen.
     let signal = Box::new(|field, time_s| swing(field, time_s).round());
-    let mut board = emulator(&config.driver, &config.settings, rate_hz, signal).unwrap();
+    let mut board =
+        emulator(&config.driver, &config.settings, rate_hz, signal).expect("the settings are good");
     let random = &mut ChaCha8Rng::seed_from_u64(3);
     let mut faults = Faults::default();
     let mut links = vec![LinkEvent::Opened { at_ns: 0 }];
@@ -45,10 +46,12 @@ fn record(config: &DeviceConfig, rate_hz: f64, n_skipped: u64) -> Vec<LinkEvent>
 /// What the record means to a fresh session and interpreter, and how many samples it says are lost.
 fn meaning(config: &DeviceConfig, links: &[LinkEvent]) -> (Vec<InstrumentEvent>, u64) {
     let pace = config.pace.pace(&config.line);
-    let mut session = Session::new(config.protocol().unwrap(), pace);
-    let mut interpreter = Interpreter::new(config, LATENCY_S).unwrap();
+    let mut session = Session::new(config.protocol().expect("good settings"), pace);
+    let mut interpreter = Interpreter::new(config, LATENCY_S).expect("good settings");
     let mut events = Vec::new();
-    links.iter().for_each(|link| interpreter.replay(link, &mut session, &mut events));
+    for link in links {
+        interpreter.replay(link, &mut session, &mut events);
+    }
     let lost = interpreter.counts().map(|(_, counts)| counts.lost).sum();
     (events, lost)
 }

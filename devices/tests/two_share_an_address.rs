@@ -50,7 +50,8 @@ impl Emulator for Twins {
 fn asked(config: &DeviceConfig, twins: Box<dyn Emulator>) -> ProbeReport {
     let clock: Arc<dyn Clock> = Arc::new(WallClock::start());
     let byte_ns = config.line.byte_ns();
-    let _port = EmulatedPort::plug_in(&config.port, twins, byte_ns, Arc::clone(&clock)).unwrap();
+    let _port = EmulatedPort::plug_in(&config.port, twins, byte_ns, Arc::clone(&clock))
+        .expect("a pseudo-terminal");
     probe(config, 2_000_000_000, &clock).expect("the settings are good")
 }
 

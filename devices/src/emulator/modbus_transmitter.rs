@@ -60,7 +60,10 @@ impl ModbusTransmitters {
             return None;
         }
         let mut reply = match function {
-            3 | 4 => self.read(request, now_s, faults).filter(|_| !faults.skips())?,
+            3 | 4 => {
+                let reply = self.read(request, now_s, faults);
+                Some(reply).filter(|_| !faults.skips())?
+            }
             WRITE => request[..6].to_vec(),
             SERVER_ID => [&[station, function, IDENTITY.len() as u8], IDENTITY].concat(),
             _ => vec![station, function | 0x80, ILLEGAL_FUNCTION],
@@ -70,7 +73,7 @@ impl ModbusTransmitters {
     }
 
     /// The registers asked for, or that they do not exist.
-    fn read(&mut self, request: &[u8], now_s: f64, faults: &mut Faults) -> Option<Vec<u8>> {
+    fn read(&mut self, request: &[u8], now_s: f64, faults: &mut Faults) -> Vec<u8> {
         let (station, function) = (request[0], request[1]);
         let start = u16::from_be_bytes([request[2], request[3]]);
         let n_registers = u16::from_be_bytes([request[4], request[5]]);
@@ -89,20 +92,20 @@ impl ModbusTransmitters {
             }
         }
         if !any || n_registers > 125 {
-            return Some(vec![station, function | 0x80, ILLEGAL_ADDRESS]);
+            return vec![station, function | 0x80, ILLEGAL_ADDRESS];
         }
         let mut reply = vec![station, function, data.len() as u8];
         reply.extend(data);
-        Some(reply)
+        reply
     }
 }
 
 /// Length of the request that begins these bytes; none until that can be told.
 fn request_bytes(bytes: &[u8]) -> Option<usize> {
-    Some(match bytes.get(1)? {
-        &SERVER_ID => 4,
-        &DEVICE_ID => 7,
-        &WRITE => 9 + usize::from(*bytes.get(6)?),
+    Some(match *bytes.get(1)? {
+        SERVER_ID => 4,
+        DEVICE_ID => 7,
+        WRITE => 9 + usize::from(*bytes.get(6)?),
         _ => 8,
     })
 }
