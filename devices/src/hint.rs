@@ -31,7 +31,7 @@ impl InstrumentError {
             }
             Self::ChannelTwice { quantity, .. } => {
                 format!(
-                    "keep one [[device.channel]] with quantity = \"{}\" and drop or rename the other",
+                    "keep one [[device.channel]] with quantity = \"{}\", drop or rename the other",
                     quantity.name()
                 )
             }

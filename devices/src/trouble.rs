@@ -115,7 +115,8 @@ impl Troubles {
                 self.silence_told &= self.silent.iter().any(|silent| *silent > 0);
             }
             Decoded::Identity(seen) => {
-                self.n_frames += 1;
+                // Who says its name may still send readings that make no frame of this profile.
+                self.n_bytes = 0;
                 self.nameless = None;
                 let expected = self.identity.clone();
                 if let Some(expected) = expected.filter(|expected| !seen.contains(expected)) {

@@ -1,4 +1,4 @@
-//! Who hangs on a port is asked wherever the protocol has a way, and told plainly where it has none.
+//! Who hangs on a port is asked where the protocol has a way, and told plainly where it has none.
 
 use std::sync::Arc;
 
