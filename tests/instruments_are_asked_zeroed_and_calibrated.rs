@@ -43,8 +43,53 @@ fn devices_and_check_tell_who_answers_and_what_it_reads() {
         "{}",
         told.out
     );
+    // Its lines carry readings alone.
+    assert!(told.out.contains("carriage (115200 8N1): cannot say who it is\n"), "{}", told.out);
+    assert!(!told.out.contains("note: "), "{}", told.out);
     let list = rolltank(tank.path(), &["devices"]);
     assert!(list.out.contains("mantracourt-dsc"), "{}", list.out);
+}
+
+#[test]
+fn one_instrument_alone_is_asked_without_a_campaign() {
+    let tank = LiveTank::at_speed(1.0);
+    let port = tank.port(0).path().display().to_string();
+    let ask = |more: &[&str]| {
+        let one = ["devices", "--port", &port, "--profile", "cobs-board", "--seconds", "1.5"];
+        rolltank(tank.path(), &[&one[..], more].concat())
+    };
+    let told = ask(&["--settings", "fields = 1"]);
+    assert_eq!(told.exit, 0, "{}{}", told.out, told.err);
+    let head = format!("{port} (921600 8N1): rolltank emulated board\n  field 0 (value 0): ");
+    assert!(told.out.starts_with(&head) && told.out.ends_with(" Hz\n"), "{}", told.out);
+    let told = ask(&["--settings", "fields = 1", "--json"]);
+    let told: serde_json::Value = serde_json::from_str(&told.out).expect("JSON");
+    let field = &told["devices"][0]["fields"][0];
+    assert!(field["raw"].is_f64() && field["rate_hz"].as_f64() > Some(50.0), "{told}");
+    // Frames of another length are no frames of this profile.
+    let told = ask(&[]);
+    assert!(told.exit == 1 && told.out.contains("field 1 (value 1): no value"), "{}", told.out);
+    assert!(told.out.contains("hint: "), "{}", told.out);
+    let told = ask(&["--settings", "fields: 1"]);
+    let words = "expected NAME = VALUE, NAME = VALUE, as in a campaign file";
+    assert!(told.exit == 1 && told.err.contains(words), "{}{}", told.out, told.err);
+}
+
+#[test]
+fn a_port_by_the_kernels_name_is_told_with_its_stable_one() {
+    let tank = LiveTank::at_speed(1.0);
+    let stable = tank.port(1).path().to_owned();
+    let device = stable.canonicalize().expect("it is plugged in").display().to_string();
+    let by_id = stable.parent().expect("a folder").display().to_string();
+    tank.edit(&stable.display().to_string(), &device);
+    let check = ["check", ".", "--seconds", "0.5", "--by-id", &by_id];
+    let told = rolltank(tank.path(), &check);
+    let note = format!(
+        "  note: {device} may be another instrument's after replugging; write port = \"{}\"\n",
+        stable.display()
+    );
+    assert!(told.exit == 0 && told.out.contains(&note), "{}{}", told.out, told.err);
+    assert_eq!(told.out.matches("note: ").count(), 1, "{}", told.out);
 }
 
 #[test]
@@ -95,9 +140,17 @@ fn mistakes_between_devices_are_all_told_at_once_with_their_lines() {
         .unwrap();
     let told = rolltank(folder.path(), &["check", "."]);
     assert_eq!(told.exit, 2, "{}", told.err);
+    let named = CAMPAIGN.replace("PORTS/carriage\"", "/dev/x\"\nidentity = \"VBW\"");
+    std::fs::write(folder.path().join("campaign.toml"), named).unwrap();
+    let unasked = rolltank(folder.path(), &["check", "."]);
+    let words =
+        "campaign.toml:22: device \"carriage\": identity is \"VBW\", but driver \"text-line\"";
+    assert!(unasked.exit == 2 && unasked.err.contains(words), "{}", unasked.err);
+    assert!(unasked.err.contains("hint: give settings.identify"), "{}", unasked.err);
     for words in [
         "campaign.toml:22: no profile is called \"arduino-txt\"",
-        "roll is mapped twice: by device \"potentiometer\" and by device \"copy\"",
+        "roll is mapped twice: by device \"potentiometer\" from field 0 (value 0) of port",
+        "and by device \"copy\" from field 0 (value 0) of port",
         "devices \"potentiometer\" and \"copy\" are both on port",
     ] {
         assert!(told.err.contains(words), "{words} is not in:\n{}", told.err);

@@ -115,15 +115,12 @@ pub enum InstrumentError {
         second: String,
     },
     /// A quantity that two channels claim.
-    #[error("{} is mapped twice: by device \"{first}\" and by device \"{second}\"",
-        quantity.name())]
+    #[error("{} is mapped twice: by {} and by {}", quantity.name(), claims[0], claims[1])]
     ChannelTwice {
         /// The quantity.
         quantity: Quantity,
-        /// A device that measures it.
-        first: String,
-        /// Another.
-        second: String,
+        /// The two channels that claim it.
+        claims: Box<[ChannelClaim; 2]>,
     },
     /// A port that cannot be opened.
     #[error("device \"{device}\": port \"{}\" {}", port.display(), told(fault))]
@@ -153,15 +150,34 @@ pub enum InstrumentError {
         seen: String,
     },
     /// Nothing comes.
-    #[error("device \"{device}\": nothing comes from port \"{}\"{}", port.display(),
+    #[error("device \"{device}\": nothing comes from port \"{}\" at {line}{}", port.display(),
         asked(request.as_deref()))]
     Silent {
         /// The device.
         device: String,
         /// Its port.
         port: PathBuf,
+        /// The line's settings.
+        line: String,
         /// What was asked, when anything was.
         request: Option<String>,
+    },
+    /// Answers of one station that are damaged, one after the other.
+    #[error("device \"{device}\": port \"{}\" brings damaged answers{}: {n_answers} more than good \
+        ones, asked \"{request}\", such as {seen}", port.display(), at_address(*station))]
+    Collided {
+        /// The device.
+        device: String,
+        /// Its port.
+        port: PathBuf,
+        /// The address that was asked, where the bus has such.
+        station: Option<u16>,
+        /// How many more were damaged than not.
+        n_answers: u32,
+        /// The question.
+        request: String,
+        /// Bytes of the last answer.
+        seen: String,
     },
     /// Another kind of instrument answers.
     #[error("device \"{device}\": port \"{}\" answers \"{seen}\", expected is \"{expected}\"",
@@ -175,6 +191,32 @@ pub enum InstrumentError {
         expected: String,
         /// What it said.
         seen: String,
+    },
+    /// The instrument talks, but not about itself.
+    #[error("device \"{device}\": port \"{}\" brings readings but does not say who it is, asked \
+        \"{request}\", expected is \"{expected}\"", port.display())]
+    NotSaid {
+        /// The device.
+        device: String,
+        /// Its port.
+        port: PathBuf,
+        /// Part of what it should say.
+        expected: String,
+        /// The question.
+        request: String,
+    },
+    /// An identity that is to be compared with nothing.
+    #[error(
+        "device \"{device}\": identity is \"{expected}\", but driver \"{driver}\" with these \
+        settings has no way to ask the instrument who it is"
+    )]
+    CannotAsk {
+        /// The device.
+        device: String,
+        /// Its driver.
+        driver: String,
+        /// Part of what it should say.
+        expected: String,
     },
     /// The instrument refuses a request.
     #[error("device \"{device}\": port \"{}\" refuses \"{request}\": \"{reply}\"", port.display())]
@@ -215,14 +257,34 @@ impl InstrumentError {
             | Self::Port { device, .. }
             | Self::Garbage { device, .. }
             | Self::Silent { device, .. }
+            | Self::Collided { device, .. }
             | Self::WrongDevice { device, .. }
+            | Self::NotSaid { device, .. }
+            | Self::CannotAsk { device, .. }
             | Self::Refused { device, .. }
             | Self::Unasked { device, .. } => Some(device),
-            Self::PortTwice { second, .. }
-            | Self::AddressTwice { second, .. }
-            | Self::ChannelTwice { second, .. } => Some(second),
+            Self::PortTwice { second, .. } | Self::AddressTwice { second, .. } => Some(second),
+            Self::ChannelTwice { claims, .. } => Some(&claims[1].device),
         }
     }
+}
+
+/// A channel that claims a quantity: where its values come from.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("device \"{device}\" from field {field} ({name}) of port \"{}\"", port.display())]
+pub struct ChannelClaim {
+    /// The device.
+    pub device: String,
+    /// Its port.
+    pub port: PathBuf,
+    /// The field.
+    pub field: usize,
+    /// The field as the driver names it.
+    pub name: String,
+}
+
+fn at_address(station: Option<u16>) -> String {
+    station.map(|station| format!(" of address {station}")).unwrap_or_default()
 }
 
 fn numbered(fields: &[String]) -> String {

@@ -30,7 +30,10 @@ impl InstrumentError {
                     .to_owned()
             }
             Self::ChannelTwice { quantity, .. } => {
-                format!("keep one channel with quantity = \"{}\"", quantity.name())
+                format!(
+                    "keep one [[device.channel]] with quantity = \"{}\", drop or rename the other",
+                    quantity.name()
+                )
             }
             Self::Port { fault, present, .. } => return port_hint(fault, present),
             Self::Garbage { .. } => "check baud and parity against the instrument's own settings, \
@@ -45,6 +48,24 @@ impl InstrumentError {
             Self::WrongDevice { .. } => {
                 "another instrument hangs on this port: exchange the cables or the ports".to_owned()
             }
+            Self::Collided { station: Some(_), .. } => {
+                "two instruments may have this address and talk at once: switch one off and look \
+                 again; else check parity, termination and shield"
+                    .to_owned()
+            }
+            Self::Collided { .. } => {
+                "check parity, cable and shield; on a bus, whether two instruments talk at once"
+                    .to_owned()
+            }
+            Self::NotSaid { .. } => {
+                "another instrument may hang on this port: look at its label; one that cannot say \
+                 who it is needs a [[device]] without identity"
+                    .to_owned()
+            }
+            Self::CannotAsk { driver, .. } => match crate::driver::driver(driver) {
+                Some(entry) => format!("{}, or drop identity", entry.asks),
+                None => return None,
+            },
             Self::Refused { .. } => {
                 "compare the settings with the instrument's own; a password may protect it"
                     .to_owned()

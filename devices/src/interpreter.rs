@@ -250,7 +250,7 @@ impl Interpreter {
                 Decoded::Damaged { .. } => self.count(|_| true, |counts| counts.damaged += 1),
                 Decoded::Refused { .. } | Decoded::Unasked { .. } => {}
             }
-            self.troubles.decoded(what);
+            self.troubles.decoded(what, at_ns);
         }
         out.extend(self.troubles.take(at_ns).into_iter().map(InstrumentEvent::Trouble));
     }
@@ -290,8 +290,12 @@ impl Interpreter {
         if stamp.restarted {
             out.push(InstrumentEvent::Restarted { at_s: stamp.time_s });
         }
-        let counted = stamp.sequence.is_some() && !stamp.restarted;
+        let counted = stamp.is_numbered && !stamp.restarted;
         let from_s = self.gap_from_s.take();
+        if let (None, Some([from_s, to_s])) = (from_s, stamp.missing_between_s) {
+            let n_missing = Some(stamp.n_missing);
+            return out.push(InstrumentEvent::Gap { from_s, to_s, n_missing });
+        }
         let gap = match (from_s, self.last_time_s) {
             // Without numbers nobody knows what was lost while the cable was out.
             (Some(from_s), _) => Some((from_s, counted.then_some(stamp.n_missing))),

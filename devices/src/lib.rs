@@ -29,7 +29,7 @@ mod trouble;
 
 pub use attachment::{Attachment, AttachmentError};
 pub use device::{Device, DeviceError, Reading};
-pub use error::InstrumentError;
+pub use error::{ChannelClaim, InstrumentError};
 pub use instrument::{AttachedInstrument, Instrument};
 pub use interpreter::{InstrumentEvent, Interpreter, Measured};
 pub use quality::Quality;

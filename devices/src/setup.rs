@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::Quantity;
 use crate::channel::{Channel, Lag};
-use crate::driver::{Protocol, driver};
-use crate::error::InstrumentError;
+use crate::driver::{Protocol, SettingsError, driver};
+use crate::error::{ChannelClaim, InstrumentError};
 use crate::port::{Line, Parity};
 use crate::profile::{PaceSettings, Profile, profile};
 
@@ -69,6 +69,38 @@ pub struct DeviceConfig {
 }
 
 impl DeviceSetup {
+    /// An instrument by itself, named by its port, with settings as they stand in an inline table:
+    /// `stations = [2], command = 40`.
+    ///
+    /// # Errors
+    /// [`InstrumentError::Settings`] when that is no inline table.
+    pub fn alone(port: PathBuf, profile: &str, settings: &str) -> Result<Self, InstrumentError> {
+        let name = port.display().to_string();
+        let table = format!("settings = {{ {settings} }}").parse::<toml::Table>();
+        let settings = table.ok().and_then(|mut table| table.remove("settings"));
+        let Some(toml::Value::Table(settings)) = settings else {
+            return Err(InstrumentError::Settings {
+                device: name,
+                driver: profile.to_owned(),
+                source: SettingsError(
+                    "expected NAME = VALUE, NAME = VALUE, as in a campaign file".to_owned(),
+                ),
+            });
+        };
+        Ok(Self {
+            name,
+            profile: profile.to_owned(),
+            port,
+            baud: None,
+            parity: None,
+            pace: None,
+            identity: None,
+            lag: None,
+            settings,
+            channels: Vec::new(),
+        })
+    }
+
     /// Fills up from the named profile, and checks.
     ///
     /// # Errors
@@ -82,12 +114,30 @@ impl DeviceSetup {
     /// # Errors
     /// The first mistake found.
     pub fn resolve_with(&self, profile: &Profile) -> Result<DeviceConfig, InstrumentError> {
+        let config = self.filled_up(profile);
+        config.check(&self.profile)?;
+        config.check_channels()?;
+        Ok(config)
+    }
+
+    /// Fills up from the named profile, and checks all but the channels, of which it may have none:
+    /// who looks at raw fields needs no more.
+    ///
+    /// # Errors
+    /// The first mistake found.
+    pub fn resolve_raw(&self) -> Result<DeviceConfig, InstrumentError> {
+        let config = self.filled_up(&profile(&self.profile)?);
+        config.check(&self.profile)?;
+        Ok(config)
+    }
+
+    fn filled_up(&self, profile: &Profile) -> DeviceConfig {
         let mut line = profile.line;
         line.baud = self.baud.unwrap_or(line.baud);
         line.parity = self.parity.unwrap_or(line.parity);
         let mut settings = profile.settings.clone();
         settings.extend(self.settings.clone());
-        let config = DeviceConfig {
+        DeviceConfig {
             name: self.name.clone(),
             port: self.port.clone(),
             line,
@@ -97,9 +147,7 @@ impl DeviceSetup {
             driver: profile.driver.clone(),
             settings,
             channels: self.channels.clone(),
-        };
-        config.check(&self.profile)?;
-        Ok(config)
+        }
     }
 }
 
@@ -142,7 +190,16 @@ impl DeviceConfig {
             return number(what, value, "a positive number");
         }
         let protocol = self.protocol()?;
-        let fields = protocol.fields();
+        if let Some(expected) = self.identity.clone().filter(|_| !protocol.asks_who()) {
+            let driver = self.driver.clone();
+            return Err(InstrumentError::CannotAsk { device: device(), driver, expected });
+        }
+        self.check_stations(protocol.stations())
+    }
+
+    fn check_channels(&self) -> Result<(), InstrumentError> {
+        let device = || self.name.clone();
+        let fields = self.protocol()?.fields();
         if self.channels.is_empty() {
             return Err(InstrumentError::NoChannels { device: device() });
         }
@@ -162,7 +219,7 @@ impl DeviceConfig {
                 source,
             })?;
         }
-        self.check_stations(protocol.stations())
+        Ok(())
     }
 
     fn check_stations(&self, mut stations: Vec<u16>) -> Result<(), InstrumentError> {
@@ -196,13 +253,14 @@ pub fn check(setups: &[DeviceSetup]) -> (Vec<DeviceConfig>, Vec<InstrumentError>
 /// Mistakes that take two devices.
 fn between(configs: &[DeviceConfig]) -> Vec<InstrumentError> {
     let mut mistakes = Vec::new();
-    let mut quantities: BTreeMap<Quantity, &str> = BTreeMap::new();
+    let mut quantities: BTreeMap<Quantity, ChannelClaim> = BTreeMap::new();
     for (index, config) in configs.iter().enumerate() {
         for channel in &config.channels {
             let quantity = channel.quantity;
-            if let Some(first) = quantities.insert(quantity, &config.name) {
-                let (first, second) = (first.to_owned(), config.name.clone());
-                mistakes.push(InstrumentError::ChannelTwice { quantity, first, second });
+            let second = claim(config, channel.field);
+            if let Some(first) = quantities.insert(quantity, second.clone()) {
+                let claims = Box::new([first, second]);
+                mistakes.push(InstrumentError::ChannelTwice { quantity, claims });
             }
         }
         for earlier in &configs[..index] {
@@ -215,6 +273,16 @@ fn between(configs: &[DeviceConfig]) -> Vec<InstrumentError> {
         }
     }
     mistakes
+}
+
+fn claim(config: &DeviceConfig, field: usize) -> ChannelClaim {
+    let fields = config.protocol().map(|protocol| protocol.fields()).unwrap_or_default();
+    ChannelClaim {
+        device: config.name.clone(),
+        port: config.port.clone(),
+        field,
+        name: fields.get(field).cloned().unwrap_or_default(),
+    }
 }
 
 /// Two names may lead to one port.

@@ -1,6 +1,8 @@
 //! When a reading was taken, on the host's clock, and how well that is known.
 
-use crate::clock::{ClockLine, Counter, CounterStep, Envelope, NS_PER_S, Paced};
+use crate::clock::{
+    ClockLine, Counter, CounterStep, Envelope, Missing, NS_PER_S, Paced, Rhythm, TickSteps,
+};
 use crate::driver::{DeviceTicks, Taken};
 
 /// Device time may differ from the host's by this much per elapsed second, and still be a clock.
@@ -32,6 +34,10 @@ pub(crate) struct Stamper {
     sequence: Option<Counter>,
     ticks: Option<Counter>,
     paced: Option<Paced>,
+    /// Steps of the ticks, where nothing else counts samples.
+    steps: TickSteps,
+    /// The beat of the arrivals, where the instrument gives no number at all.
+    rhythm: Rhythm,
     envelope: Envelope,
     line: Option<ClockLine>,
     line_at_s: f64,
@@ -47,6 +53,10 @@ pub(crate) struct Stamp {
     pub(crate) sequence: Option<u64>,
     /// Samples missing before it.
     pub(crate) n_missing: u64,
+    /// Where they are missing [s], if not right before it.
+    pub(crate) missing_between_s: Option<[f64; 2]>,
+    /// By the instrument's own numbers, so that no loss can hide.
+    pub(crate) is_numbered: bool,
     /// The instrument's counters started anew.
     pub(crate) restarted: bool,
     /// The same frame came before.
@@ -60,6 +70,8 @@ impl Stamper {
             sequence: settings.ticks.sequence_bits.map(Counter::new),
             ticks: settings.ticks.time_bits.map(Counter::new),
             paced: settings.sends_hz.map(Paced::new),
+            steps: TickSteps::default(),
+            rhythm: Rhythm::default(),
             envelope: Envelope::new(settings.latency_s),
             line: None,
             line_at_s: f64::NEG_INFINITY,
@@ -79,6 +91,7 @@ impl Stamper {
         self.line = None;
         self.line_at_s = f64::NEG_INFINITY;
         self.paced = self.settings.sends_hz.map(Paced::new);
+        self.rhythm = Rhythm::default();
         self.last_arrival_s = None;
     }
 
@@ -93,6 +106,8 @@ impl Stamper {
             bound_s: 0.0,
             sequence: None,
             n_missing: 0,
+            missing_between_s: None,
+            is_numbered: self.sequence.is_some() || self.ticks.is_some(),
             restarted: false,
             repeated: false,
         };
@@ -114,14 +129,21 @@ impl Stamper {
             Taken::Held(from_ns, to_ns) => middle(from_ns, to_ns, 0.0),
             Taken::Between(from_ns, to_ns) => middle(from_ns, to_ns, self.settings.age_s),
         };
-        stamp.time_s = time_s - self.settings.lag_s;
+        let lag_s = self.settings.lag_s;
+        stamp.missing_between_s = stamp.missing_between_s.map(|at_s| at_s.map(|at_s| at_s - lag_s));
+        stamp.time_s = time_s - lag_s;
         stamp.bound_s = bound_s + self.settings.lag_bound_s;
         stamp
     }
 
     fn arrived(&mut self, arrival_s: f64, ticks: Option<u64>, stamp: &mut Stamp) -> (f64, f64) {
         let Some(device_s) = self.device_s(arrival_s, ticks, stamp) else {
-            return (arrival_s - self.settings.latency_s / 2.0, self.settings.latency_s / 2.0);
+            let half_s = self.settings.latency_s / 2.0;
+            if let Some(Missing { n_samples, between_s }) = self.rhythm.next(arrival_s) {
+                stamp.n_missing += n_samples;
+                stamp.missing_between_s = Some(between_s.map(|at_s| at_s - half_s));
+            }
+            return (arrival_s - half_s, half_s);
         };
         self.last_arrival_s = Some(arrival_s);
         self.envelope.push(device_s, arrival_s);
@@ -153,9 +175,13 @@ impl Stamper {
         let counter = self.ticks.as_mut()?;
         let value = ticks?;
         match counter.ticks(value, elapsed_s * per_s, tolerance_s * per_s) {
-            Some(continued) if !stamp.restarted => Some(continued as f64 / per_s),
+            Some(continued) if !stamp.restarted => {
+                self.step(continued, stamp);
+                Some(continued as f64 / per_s)
+            }
             continued => {
                 stamp.restarted = true;
+                self.steps = TickSteps::default();
                 if continued.is_some() {
                     // A restart by the sequence number: the ticks begin a new line as well.
                     self.ticks = self.settings.ticks.time_bits.map(Counter::new);
@@ -164,6 +190,20 @@ impl Stamper {
                 self.forget_clock();
                 Some(value as f64 / per_s)
             }
+        }
+    }
+}
+
+impl Stamper {
+    /// What the ticks say of losses and repeats where no sequence number does.
+    fn step(&mut self, continued: u64, stamp: &mut Stamp) {
+        if self.sequence.is_some() {
+            return;
+        }
+        match self.steps.next(continued) {
+            CounterStep::Skipped(n_missing) => stamp.n_missing += n_missing,
+            CounterStep::Repeated => stamp.repeated = true,
+            CounterStep::First | CounterStep::Next | CounterStep::Restarted => {}
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The raw record of a link, through a fresh driver, gives what was live, to the bit.
 
+use devices::channel::Counts;
 use devices::driver::Session;
 use devices::emulator::Fault;
 use devices::port::LinkEvent;
@@ -26,7 +27,8 @@ fn lasting(events: &[InstrumentEvent]) -> Vec<InstrumentEvent> {
     events.iter().filter(told).cloned().collect()
 }
 
-fn replay_equals_live(profile: &str, lines: &str) {
+/// What the first channel counted, live and replayed.
+fn replay_equals_live(profile: &str, lines: &str) -> Counts {
     let mut bench = bench(profile, lines, 200.0);
     bench.listen_until(|bench| bench.n_samples() >= 40);
     for fault in [Fault::Skip(3), Fault::Noise(30), Fault::Repeat(2), Fault::Saturate(true)] {
@@ -49,6 +51,8 @@ fn replay_equals_live(profile: &str, lines: &str) {
     }
     assert_eq!(lasting(&replayed), lasting(&bench.events), "{profile}");
     assert!(interpreter.counts().eq(bench.instrument.counts()), "{profile}");
+    let (_, counts) = interpreter.counts().next().expect("it has a channel");
+    counts
 }
 
 #[test]
@@ -76,4 +80,17 @@ fn modules_with_check_sums_are_replayed() {
 #[test]
 fn a_binary_stream_without_a_sequence_is_replayed() {
     replay_equals_live("hbm-ad104-binary", &channels(1));
+}
+
+#[test]
+fn lines_with_a_time_and_no_sequence_are_replayed() {
+    let settings = "settings = { pattern = \"{time_us},{0}\" }\n";
+    let counts = replay_equals_live("arduino-text", &format!("{settings}{}", channels(1)));
+    // The board's own time tells how many it sent while the cable was out as well.
+    assert!(counts.lost > 3 + 20 && counts.repeated == 2, "{counts:?}");
+}
+
+#[test]
+fn lines_without_any_number_are_replayed() {
+    replay_equals_live("scale-continuous", &channels(1));
 }

@@ -5,8 +5,9 @@ use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
 
-use devices::clock::WallClock;
-use devices::emulator::{EmulatedPort, Emulator, Fault, Faults, emulator};
+use devices::clock::{Clock, WallClock};
+use devices::emulator::{EmulatedPort, Fault, emulator};
+use devices::probe::probe;
 use devices::setup::{self, DeviceSetup};
 use devices::{Instrument, InstrumentError, InstrumentEvent};
 
@@ -140,15 +141,33 @@ fn a_parity_that_the_port_refuses_is_told() {
 }
 
 #[test]
-fn garbage_of_a_wrong_baud_is_told() {
+fn a_talker_at_another_speed_is_told_as_garbage() {
     let (_folder, config) = device("arduino-text", &channels(1));
-    // What a line at another rate brings: bytes, but never a frame.
-    let _port = plug_in(&config, "cobs", "fields = 4");
+    let port =
+        plug_in(&config, "text-line", "pattern = \"$RD,{sequence},{time_us},{0},{1}*{xor}\"");
+    port.fault(Fault::Baud(57_600));
     let told = first_trouble(&config);
     assert!(names_device_and_port(&told), "{told}");
     assert!(told.contains("brings garbage at 115200 8N1"), "{told}");
     assert!(told.contains("bytes without one good frame, such as "), "{told}");
     assert!(told.contains("hint: check baud and parity"), "{told}");
+}
+
+#[test]
+fn an_instrument_that_is_asked_at_another_speed_is_told_as_silent() {
+    let (_folder, config) = device("adam-4017", &channels(1));
+    let port = plug_in(&config, "dcon", "modules = [{ address = 1 }]");
+    port.fault(Fault::Baud(19_200));
+    let told = first_trouble(&config);
+    assert!(names_device_and_port(&told), "{told}");
+    assert!(told.contains("\" at 9600 8N1, asked \"#010\\r\""), "{told}");
+    assert!(told.contains("nothing comes from port"), "{told}");
+    assert!(told.contains("hint: check power, address, baud"), "{told}");
+    // Set to the port's speed it is the instrument that was meant.
+    port.fault(Fault::Baud(9600));
+    let clock: Arc<dyn Clock> = Arc::new(WallClock::start());
+    let report = probe(&config, 1_000_000_000, &clock).expect("the settings are good");
+    assert!(report.troubles.is_empty() && report.channels[0].last.is_some(), "{report:?}");
 }
 
 #[test]
@@ -209,37 +228,6 @@ fn a_refused_request_is_told() {
     assert!(told.contains("\"exception 2\"\nhint: "), "{told}");
 }
 
-/// Two instruments on one address, far enough apart not to garble each other.
-struct Twins(Box<dyn Emulator>);
-
-impl Emulator for Twins {
-    fn receive(&mut self, bytes: &[u8], now_s: f64, faults: &mut Faults, out: &mut Vec<u8>) {
-        self.0.receive(bytes, now_s, faults, out);
-        out.extend_from_within(..);
-    }
-
-    fn tick(&mut self, now_s: f64, faults: &mut Faults, out: &mut Vec<u8>) {
-        self.0.tick(now_s, faults, out);
-    }
-
-    fn restart(&mut self, now_s: f64) {
-        self.0.restart(now_s);
-    }
-}
-
-#[test]
-fn two_instruments_on_one_address_are_told() {
-    let (_folder, config) = device("adam-4017", &channels(1));
-    let one = emulator(&config.driver, &config.settings, 100.0, Box::new(|_, _| 1.5)).unwrap();
-    let clock = Arc::new(WallClock::start());
-    let byte_ns = config.line.byte_ns();
-    let _port = EmulatedPort::plug_in(&config.port, Box::new(Twins(one)), byte_ns, clock).unwrap();
-    let told = first_trouble(&config);
-    assert!(names_device_and_port(&told), "{told}");
-    assert!(told.contains("answers that nobody asked for: "), "{told}");
-    assert!(told.contains("hint: two instruments may have one address"), "{told}");
-}
-
 #[test]
 fn an_instrument_that_says_nothing_is_told_once() {
     let mut bench = bench("cobs-board", &channels(1), 100.0);
@@ -297,7 +285,9 @@ fn every_mistake_of_a_campaign_is_told_at_once() {
     let expected = [
         "\"cell\": force is to come from field 2, but the fields are 0 (001:SYS), 1 (002:SYS)",
         "no profile is called \"cobs-borad\"\nhint: known are adam-4017, arduino-text",
-        "roll is mapped twice: by device \"pot\" and by device \"encoder\"\nhint: keep one channel",
+        "roll is mapped twice: by device \"pot\" from field 0 (01.0) of port \
+         \"/dev/serial/by-id/a\" and by device \"encoder\" from field 1 (value 1) of port \
+         \"/dev/serial/by-id/a\"\nhint: keep one [[device.channel]] with quantity = \"roll\"",
         "devices \"pot\" and \"encoder\" are both on port \"/dev/serial/by-id/a\"\nhint: ",
         "devices \"pot\" and \"bus\" both have address 1 on port \"/dev/serial/by-id/a\"",
         "devices \"twice\" and \"twice\" both have address 3 on port \"/dev/serial/by-id/d\"",

@@ -1,12 +1,12 @@
 //! A driver's session and its emulator joined without port or clock: thousands of cycles a second.
 
-use devices::driver::{Decoded, FieldValue, Session, driver};
+use devices::driver::{Decoded, FieldValue, Purpose, Session, driver};
 use devices::emulator::{Emulator, Faults, Signal, emulator};
 use devices::port::{Line, Parity};
 use devices::profile::PaceSettings;
 
 /// The settings that the wire stories go through: every driver, in its different forms.
-pub(crate) const FORMS: [(&str, &str); 19] = [
+pub(crate) const FORMS: [(&str, &str); 22] = [
     ("text-line", "pattern = \"$RD,{sequence},{time_us},{0},{1}*{xor}\""),
     ("text-line", "pattern = \"{time_s} {0};{1} {sum}\"\ndecimal_comma = true"),
     ("text-line", "pattern = \"S{0}\"\nrequest = \"SX\\r\\n\""),
@@ -30,6 +30,13 @@ pub(crate) const FORMS: [(&str, &str); 19] = [
     ("hbm-binary", "format = 2"),
     ("hbm-binary", "format = 12\nchecked = true"),
     ("cobs", "fields = 3\nidentify = true"),
+    ("text-line", "pattern = \"S{0}\"\nidentify = \"ID?\\n\"\nidentity_line = \"ID {name}\""),
+    ("mantrabus", "command = 40\nversion_command = 5\nset_up = [{ command = 9, value = 0.5 }]"),
+    (
+        "modbus-rtu",
+        "identify = { function = 17 }\nset_up = [{ station = 1, address = 9, registers = [7] }]\n\
+         [[fields]]\nfunction = 3\naddress = 5\ntype = \"int16\"",
+    ),
 ];
 
 /// A session in conversation.
@@ -38,6 +45,8 @@ pub(crate) struct Wire {
     emulator: Box<dyn Emulator>,
     pub(crate) faults: Faults,
     pub(crate) now_ns: u64,
+    /// The last turn asked for readings, and the whole answer came.
+    pub(crate) is_answered: bool,
     /// Everything decoded since it was last taken.
     pub(crate) decoded: Vec<Decoded>,
 }
@@ -52,12 +61,17 @@ pub(crate) fn session(name: &str, settings: &str) -> Session {
 
 impl Wire {
     pub(crate) fn new(name: &str, settings: &str, signal: Signal) -> Self {
+        Self::at_rate(name, settings, 200.0, signal)
+    }
+
+    /// With an instrument that converts so often.
+    pub(crate) fn at_rate(name: &str, settings: &str, rate_hz: f64, signal: Signal) -> Self {
         let table = settings.parse().expect("the settings are good");
-        let emulator = emulator(name, &table, 200.0, signal).expect("the settings are good");
+        let emulator = emulator(name, &table, rate_hz, signal).expect("the settings are good");
         let mut session = session(name, settings);
         session.open(0);
         let faults = Faults::default();
-        Self { session, emulator, faults, now_ns: 0, decoded: Vec::new() }
+        Self { session, emulator, faults, now_ns: 0, is_answered: false, decoded: Vec::new() }
     }
 
     /// One turn: what the host says, and what comes back through `spoil`.
@@ -70,7 +84,12 @@ impl Wire {
             self.emulator.receive(&sent, now_s, &mut self.faults, &mut answer);
         }
         self.emulator.tick(now_s, &mut self.faults, &mut answer);
+        let whole = answer.clone();
         spoil(&mut answer);
+        let cycle = self.session.protocol().cycle();
+        let mut reads = cycle.iter().filter(|request| request.purpose == Purpose::Read);
+        let is_read = reads.any(|request| request.bytes == sent);
+        self.is_answered = is_read && !whole.is_empty() && whole == answer;
         self.now_ns += 2_000_000;
         if !answer.is_empty() {
             self.session.receive(&answer, self.now_ns, &mut self.decoded);

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use ::devices::InstrumentError;
+use ::devices::port::{BY_ID_FOLDER, stable_name};
 use ::devices::probe::ProbeReport;
 use ::replay::{Note, Severity};
 use clap::Args;
@@ -30,6 +31,9 @@ pub(super) struct Arguments {
     /// Listen to each instrument for so long
     #[arg(long, value_name = "SECONDS", default_value_t = 2.0, value_parser = super::positive)]
     seconds: f64,
+    /// Folder of the names that ports keep when they are replugged
+    #[arg(long, value_name = "FOLDER", default_value = BY_ID_FOLDER)]
+    by_id: PathBuf,
 }
 
 pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
@@ -59,7 +63,9 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
         let reports = live.iter().zip(&asked);
         let devices: Vec<Value> = reports
             .filter_map(|(device, report)| {
-                Some(devices::report_json(device, report.as_ref().ok()?))
+                let mut told = devices::report_json(device, report.as_ref().ok()?);
+                told["stable_port"] = json!(stable_name(&device.port, &arguments.by_id));
+                Some(told)
             })
             .collect();
         let report = json!({
@@ -75,6 +81,14 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     for (device, report) in live.iter().zip(&asked) {
         if let Ok(report) = report {
             devices::tell(out, device, report)?;
+        }
+        if let Some(name) = stable_name(&device.port, &arguments.by_id) {
+            writeln!(
+                out,
+                "  note: {} may be another instrument's after replugging; write port = \"{}\"",
+                device.port.display(),
+                name.display()
+            )?;
         }
     }
     match exit {

@@ -1,16 +1,16 @@
-//! `rolltank devices`: which ports and profiles there are, and what the instruments read now.
+//! `rolltank devices`: ports, profiles, and what the instruments of a campaign or one alone read.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread;
 
 use ::devices::InstrumentError;
 use ::devices::clock::{Clock, WallClock};
-use ::devices::port::found_ports;
-use ::devices::probe::{ChannelReport, ProbeReport, probe};
+use ::devices::port::{BY_ID_FOLDER, found_ports};
+use ::devices::probe::{ChannelReport, FieldReport, ProbeReport, probe};
 use ::devices::profile::{profile, profiles};
-use ::devices::setup::DeviceConfig;
+use ::devices::setup::{DeviceConfig, DeviceSetup};
 use clap::Args;
 use serde_json::{Value, json};
 
@@ -20,11 +20,23 @@ use crate::campaign;
 /// Schema of the JSON output; its number rises when a field changes its meaning.
 const SCHEMA: &str = "rolltank.devices/1";
 
-/// List ports and profiles; with a campaign, ask each of its instruments what it reads
+/// List ports and profiles; with a campaign or a port, ask the instruments what they read
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Folder that holds campaign.toml
     campaign: Option<PathBuf>,
+    /// Ask one instrument alone at this port
+    #[arg(long, requires = "profile", conflicts_with = "campaign")]
+    port: Option<PathBuf>,
+    /// Profile of that instrument
+    #[arg(long, requires = "port", value_name = "NAME")]
+    profile: Option<String>,
+    /// Settings that differ from the profile's, such as 'stations = [2], command = 40'
+    #[arg(long, requires = "port", value_name = "SETTINGS", default_value = "")]
+    settings: String,
+    /// Bits per second, where they differ from the profile's
+    #[arg(long, requires = "port")]
+    baud: Option<u32>,
     /// Listen to each instrument for so long
     #[arg(long, value_name = "SECONDS", default_value_t = 2.0, value_parser = super::positive)]
     seconds: f64,
@@ -34,6 +46,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
+    if let (Some(port), Some(profile)) = (&arguments.port, &arguments.profile) {
+        return ask_one(arguments, port, profile, out);
+    }
     let Some(folder) = &arguments.campaign else { return list(arguments.json, out) };
     let campaign = campaign::read(folder)?;
     let asked = ask_all(&campaign.live.devices, arguments.seconds);
@@ -57,6 +72,40 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     Ok(exit)
 }
 
+/// One instrument that no campaign names: every field that it delivers, as it says it.
+fn ask_one(
+    arguments: &Arguments,
+    port: &Path,
+    profile: &str,
+    out: &mut dyn Write,
+) -> Result<Exit, Failure> {
+    let failed = |source| Failure::Instrument { source };
+    let setup = DeviceSetup::alone(port.to_owned(), profile, &arguments.settings);
+    let setup = DeviceSetup { baud: arguments.baud, ..setup.map_err(failed)? };
+    let device = setup.resolve_raw().map_err(failed)?;
+    let clock: Arc<dyn Clock> = Arc::new(WallClock::start());
+    let report = probe(&device, (arguments.seconds * 1e9) as u64, &clock).map_err(failed)?;
+    if arguments.json {
+        let devices = [report_json(&device, &report)];
+        writeln!(out, "{:#}", json!({"schema": SCHEMA, "devices": devices}))?;
+    } else {
+        tell(out, &device, &report)?;
+        for (number, FieldReport { name, last_raw, rate_hz, .. }) in
+            report.fields.iter().enumerate()
+        {
+            match last_raw {
+                Some(raw) => write!(out, "  field {number} ({name}): {raw}")?,
+                None => write!(out, "  field {number} ({name}): no value")?,
+            }
+            rate_hz.map_or(Ok(()), |rate_hz| write!(out, ", {rate_hz:.1} Hz"))?;
+            writeln!(out)?;
+        }
+        tell_troubles(out, &report)?;
+    }
+    let is_good = report.linked && report.troubles.is_empty();
+    Ok(if is_good { Exit::Done } else { Exit::Failed })
+}
+
 /// Listens to every device at once, each on a thread of its own.
 pub(super) fn ask_all(
     devices: &[DeviceConfig],
@@ -75,7 +124,7 @@ pub(super) fn ask_all(
 }
 
 fn list(as_json: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
-    let ports = found_ports();
+    let ports = found_ports(Path::new(BY_ID_FOLDER));
     let known: Vec<(&str, String)> = profiles()
         .map(|name| (name, profile(name).map_or_else(|error| error.to_string(), |p| p.title)))
         .collect();
@@ -107,10 +156,15 @@ pub(super) fn tell(
     report: &ProbeReport,
 ) -> std::io::Result<()> {
     let DeviceConfig { name, port, line, .. } = device;
-    write!(out, "{name} on {} ({})", port.display(), line.name())?;
+    // An instrument by itself has no name but its port's.
+    let on = if port.as_os_str() == name.as_str() { "" } else { " on " };
+    let path = if on.is_empty() { String::new() } else { port.display().to_string() };
+    write!(out, "{name}{on}{path} ({})", line.name())?;
     match &report.identity {
         Some(identity) => writeln!(out, ": {identity}")?,
-        None => writeln!(out)?,
+        None if !report.linked => writeln!(out)?,
+        None if report.asks_who => writeln!(out, ": does not say who it is")?,
+        None => writeln!(out, ": cannot say who it is")?,
     }
     for ChannelReport { quantity, last, rate_hz, quality, counts } in &report.channels {
         let (name, unit) = (quantity.name(), quantity.unit());
@@ -165,6 +219,11 @@ pub(super) fn report_json(device: &DeviceConfig, report: &ProbeReport) -> Value 
             })
         })
         .collect();
+    let fields: Vec<Value> = report
+        .fields
+        .iter()
+        .map(|field| json!({"name": field.name, "raw": field.last_raw, "rate_hz": field.rate_hz}))
+        .collect();
     let troubles: Vec<Value> = report
         .troubles
         .iter()
@@ -172,7 +231,7 @@ pub(super) fn report_json(device: &DeviceConfig, report: &ProbeReport) -> Value 
         .collect();
     json!({
         "device": device.name, "port": device.port, "line": device.line.name(),
-        "linked": report.linked, "identity": report.identity,
-        "channels": channels, "troubles": troubles,
+        "linked": report.linked, "asks_who": report.asks_who, "identity": report.identity,
+        "channels": channels, "fields": fields, "troubles": troubles,
     })
 }

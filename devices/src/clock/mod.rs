@@ -5,6 +5,8 @@ mod corridor;
 mod counter;
 mod envelope;
 mod paced;
+mod rhythm;
+mod tick_steps;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant, SystemTime};
@@ -16,6 +18,8 @@ use brake::Brake;
 pub use counter::{Counter, CounterStep};
 pub use envelope::{ClockLine, Envelope};
 pub use paced::Paced;
+pub(crate) use rhythm::{Missing, Rhythm};
+pub(crate) use tick_steps::TickSteps;
 
 /// Nanoseconds in a second.
 pub(crate) const NS_PER_S: f64 = 1e9;

@@ -291,7 +291,7 @@ mod tests {
 
     #[test]
     fn the_check_sums_are_the_manuals() {
-        let sums: [(&str, &[u8]); 12] = [
+        let sums: [(&str, &[u8]); 13] = [
             ("$012", b"$012B7\r"),
             ("!01200600", b"!01200600AA\r"),
             ("#01", b"#0184\r"),
@@ -303,6 +303,7 @@ mod tests {
             ("?01", b"?01A0\r"),
             ("$014", b"$014B9\r"),
             (">011+5.8222", b">011+5.82222C\r"),
+            ("%0101080640", b"%010108064019\r"),
             ("!01", b"!0182\r"),
         ];
         for (text, bytes) in sums {
@@ -328,6 +329,12 @@ mod tests {
         let found = module.decode(b"!014017\r", Some(&opening[0]));
         assert_eq!(found, Found::Frame { n_bytes: 8, content: identity });
         let found = module.decode(b"!01050600\r", Some(&opening[1]));
+        assert_eq!(found, Found::Frame { n_bytes: 10, content: Content::Accepted });
+        // The manual's module 45 in engineering form without check sum.
+        let mut manuals = bus("modules = [{ address = 0x45 }]");
+        let asked = manuals.opening()[1].clone();
+        assert_eq!(asked.bytes, b"$452\r");
+        let found = manuals.decode(b"!45050600\r", Some(&asked));
         assert_eq!(found, Found::Frame { n_bytes: 10, content: Content::Accepted });
         let found = module.decode(b"!01050640\r", Some(&opening[1]));
         assert!(matches!(found, Found::Frame { content: Content::Refused(_), .. }), "{found:?}");

@@ -7,12 +7,14 @@
 use serde::Deserialize;
 
 use super::{
-    Content, Damage, Found, Protocol, Purpose, Request, SettingsError, ask, plain, settings, value,
+    Content, Damage, Found, Protocol, Purpose, Request, SettingsError, ask, mantracourt, plain,
+    settings, value,
 };
 use crate::Quality;
 
 const START: u8 = 0xFE;
 const MARK: u8 = 0x80;
+const ACCEPTED: u8 = 0x06;
 const REFUSED: u8 = 0x15;
 /// Station, eight nibbles of a float, two of the check sum.
 const REPLY_BYTES: usize = 11;
@@ -25,6 +27,20 @@ pub(crate) struct Settings {
     pub(crate) stations: Vec<u8>,
     /// Number of the parameter that is read, from the manual's table.
     pub(crate) command: u8,
+    /// Number of the parameter `VER`, so that each station is asked who it is.
+    #[serde(default)]
+    pub(crate) version_command: Option<u8>,
+    /// Parameters that are set when the port opens, such as the filter's `FFST` to 0.
+    #[serde(default)]
+    pub(crate) set_up: Vec<Setting>,
+}
+
+/// One parameter and its value.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Setting {
+    command: u8,
+    value: f32,
 }
 
 fn station_one() -> Vec<u8> {
@@ -43,8 +59,9 @@ pub(super) fn open(table: &toml::Table) -> Result<Box<dyn Protocol>, SettingsErr
     if let Some(station) = settings.stations.iter().find(|station| !(1..=0xFD).contains(*station)) {
         return Err(SettingsError(format!("station {station}, allowed are 1 to 253")));
     }
-    if settings.command >= MARK {
-        let command = settings.command;
+    let set_up = settings.set_up.iter().map(|setting| setting.command);
+    let mut commands = set_up.chain(settings.version_command).chain([settings.command]);
+    if let Some(command) = commands.find(|command| *command >= MARK) {
         return Err(SettingsError(format!("command {command}, allowed are 0 to 127")));
     }
     Ok(Box::new(Mantrabus { settings }))
@@ -86,6 +103,15 @@ pub(crate) fn read(station: u8, command: u8) -> Vec<u8> {
     vec![START, station, command | MARK, high, low]
 }
 
+/// `FE`, station, command, the number, check sum.
+fn write(station: u8, command: u8, number: f32) -> Vec<u8> {
+    let mut bytes = vec![station, command];
+    bytes.extend(to_nibbles(number, true));
+    bytes.extend(checksum(&bytes));
+    bytes.insert(0, START);
+    bytes
+}
+
 impl Protocol for Mantrabus {
     fn fields(&self) -> Vec<String> {
         let command = self.settings.command;
@@ -97,7 +123,15 @@ impl Protocol for Mantrabus {
     }
 
     fn opening(&self) -> Vec<Request> {
-        Vec::new()
+        let mut requests = Vec::new();
+        for (tag, station) in self.settings.stations.iter().enumerate() {
+            let version = self.settings.version_command.map(|command| read(*station, command));
+            requests.extend(version.map(|bytes| ask(bytes, Purpose::Identify, tag)));
+            for Setting { command, value } in &self.settings.set_up {
+                requests.push(ask(write(*station, *command, *value), Purpose::Configure, tag));
+            }
+        }
+        requests
     }
 
     fn cycle(&self) -> Vec<Request> {
@@ -108,7 +142,7 @@ impl Protocol for Mantrabus {
     }
 
     fn decode(&mut self, bytes: &[u8], asked: Option<&Request>) -> Found {
-        let tag = asked.map_or(0, |asked| asked.tag);
+        let (purpose, tag) = asked.map_or((Purpose::Read, 0), |asked| (asked.purpose, asked.tag));
         let Some(station) = self.settings.stations.get(tag) else {
             return Found::Noise { n_bytes: 1, damage: Damage::Form };
         };
@@ -123,6 +157,10 @@ impl Protocol for Mantrabus {
                 let content = Content::Refused("NAK".to_owned());
                 return Found::Frame { n_bytes: 2, content };
             }
+            // A reading may begin with this nibble too.
+            Some(&ACCEPTED) if purpose == Purpose::Configure => {
+                return Found::Frame { n_bytes: 2, content: Content::Accepted };
+            }
             Some(_) => {}
         }
         // A byte that is no nibble ends the attempt before the length is reached.
@@ -135,6 +173,10 @@ impl Protocol for Mantrabus {
             return Found::Noise { n_bytes: 1, damage: Damage::Checksum };
         }
         match from_nibbles(&frame[1..9]).filter(|number| number.is_finite()) {
+            Some(number) if purpose == Purpose::Identify => {
+                let content = Content::Identity(mantracourt::version(f64::from(number)));
+                Found::Frame { n_bytes: REPLY_BYTES, content }
+            }
             Some(number) => {
                 let content = plain(vec![value(tag, f64::from(number), Quality::GOOD)]);
                 Found::Frame { n_bytes: REPLY_BYTES, content }
@@ -164,10 +206,32 @@ mod tests {
         let nibbles = [0x0C, 0x06, 0x04, 0x00, 0x0E, 0x06, 0x0B, 0x06];
         assert_eq!(to_nibbles(-12345.678, false), nibbles);
         assert_eq!(from_nibbles(&nibbles), Some(-12345.678));
-        let mut hundred = vec![0x14, 0x28];
-        hundred.extend(to_nibbles(100.0, true));
-        hundred.extend(checksum(&hundred.clone()));
-        assert_eq!(hundred, [0x14, 0x28, 4, 2, 0x0C, 8, 0, 0, 0, 0x80, 0x0B, 0x0E]);
+    }
+
+    #[test]
+    fn the_manuals_write_of_gain_is_written_and_its_acknowledgement_read() {
+        let text = "stations = [20]\ncommand = 40\nset_up = [{ command = 40, value = 100.0 }]";
+        let mut bus = open(&text.parse().unwrap()).unwrap();
+        let asked = bus.opening()[0].clone();
+        let bytes = [0xFE, 0x14, 0x28, 4, 2, 0x0C, 8, 0, 0, 0, 0x80, 0x0B, 0x0E];
+        assert_eq!(asked.bytes, bytes);
+        let accepted = Found::Frame { n_bytes: 2, content: Content::Accepted };
+        assert_eq!(bus.decode(&[0x14, 0x06], Some(&asked)), accepted);
+        // The same bytes are the beginning of a reading when one was asked for.
+        assert_eq!(bus.decode(&[0x14, 0x06], Some(&bus.cycle()[0])), Found::Part);
+    }
+
+    #[test]
+    fn a_cell_that_is_asked_says_its_version() {
+        let text = "stations = [20]\ncommand = 40\nversion_command = 5";
+        let mut bus = open(&text.parse().unwrap()).unwrap();
+        let asked = bus.opening()[0].clone();
+        assert_eq!(asked.bytes, read(20, 5));
+        let mut reply = vec![20];
+        reply.extend(to_nibbles(769.0, false));
+        reply.extend(checksum(&reply));
+        let content = Content::Identity("Mantracourt version 3.1".to_owned());
+        assert_eq!(bus.decode(&reply, Some(&asked)), Found::Frame { n_bytes: 11, content });
     }
 
     #[test]

@@ -3,6 +3,8 @@
 //! DSC user manual, appendix B; DSCUSB advanced manual p. 19. There is no check sum, so an answer's
 //! form is held to strictly. `OLDVAL` in `STAT` tells a conversion that was read before.
 
+use std::collections::BTreeMap;
+
 use serde::Deserialize;
 
 use super::{
@@ -34,6 +36,9 @@ pub(crate) struct Settings {
     /// `STAT` is read before each reading, for its quality and repeats.
     #[serde(default)]
     pub(crate) status: bool,
+    /// Parameters that are set when the port opens, such as `FFST = 0`: no filter.
+    #[serde(default)]
+    pub(crate) set_up: BTreeMap<String, f64>,
 }
 
 fn station_one() -> Vec<u16> {
@@ -58,10 +63,11 @@ pub(super) fn open(table: &toml::Table) -> Result<Box<dyn Protocol>, SettingsErr
     if let Some(station) = settings.stations.iter().find(|station| !(1..=999).contains(*station)) {
         return Err(SettingsError(format!("station {station}, allowed are 1 to 999")));
     }
-    let fits = settings.read.bytes().all(|byte| byte.is_ascii_alphanumeric());
-    if !fits || !(1..=4).contains(&settings.read.len()) {
-        let read = &settings.read;
-        return Err(SettingsError(format!("read is \"{read}\", an identifier has 1 to 4 letters")));
+    let fits = |name: &str| {
+        (1..=4).contains(&name.len()) && name.bytes().all(|byte| byte.is_ascii_alphanumeric())
+    };
+    if let Some(name) = settings.set_up.keys().chain([&settings.read]).find(|name| !fits(name)) {
+        return Err(SettingsError(format!("\"{name}\": an identifier has 1 to 4 letters")));
     }
     let quality = vec![Quality::GOOD; settings.stations.len()];
     Ok(Box::new(Mantracourt { settings, quality }))
@@ -75,6 +81,17 @@ pub(crate) fn query(station: u16, identifier: &str) -> Vec<u8> {
 /// `!014:RST` with its carriage return.
 pub(crate) fn action(station: u16, identifier: &str) -> Vec<u8> {
     format!("!{station:03}:{identifier}\r").into_bytes()
+}
+
+/// `!001:SGAI=123.456` with its carriage return.
+pub(crate) fn write(station: u16, identifier: &str, value: f64) -> Vec<u8> {
+    format!("!{station:03}:{identifier}={value}\r").into_bytes()
+}
+
+/// The value of `VER` in words.
+pub(super) fn version(value: f64) -> String {
+    let (high, low) = ((value / 256.0).floor(), value.rem_euclid(256.0).floor());
+    format!("Mantracourt version {high}.{low}")
 }
 
 impl Mantracourt {
@@ -106,8 +123,14 @@ impl Protocol for Mantracourt {
     }
 
     fn opening(&self) -> Vec<Request> {
-        let stations = self.settings.stations.iter().enumerate();
-        stations.map(|(tag, station)| ask(query(*station, "VER"), Purpose::Identify, tag)).collect()
+        let mut requests = Vec::new();
+        for (tag, station) in self.settings.stations.iter().enumerate() {
+            requests.push(ask(query(*station, "VER"), Purpose::Identify, tag));
+            for (identifier, value) in &self.settings.set_up {
+                requests.push(ask(write(*station, identifier, *value), Purpose::Configure, tag));
+            }
+        }
+        requests
     }
 
     fn cycle(&self) -> Vec<Request> {
@@ -139,10 +162,7 @@ impl Protocol for Mantracourt {
             (b"?", _) => Some(Content::Refused("?".to_owned())),
             (b"", _) => Some(Content::Accepted),
             (_, Purpose::Status) => self.status(tag, text),
-            (_, Purpose::Identify) => decimal(text).map(|version| {
-                let (high, low) = ((version / 256.0).floor(), version.rem_euclid(256.0).floor());
-                Content::Identity(format!("Mantracourt version {high}.{low}"))
-            }),
+            (_, Purpose::Identify) => decimal(text).map(|value| Content::Identity(version(value))),
             _ => self.value(tag, text),
         };
         match content {
@@ -182,6 +202,19 @@ mod tests {
         assert_eq!(cell.decode(&baud, Some(&asked)), Found::Frame { n_bytes: 7, content });
         let content = Content::Refused("?".to_owned());
         assert_eq!(cell.decode(&[0x3F, 0x0D], Some(&asked)), Found::Frame { n_bytes: 2, content });
+        let accepted = Found::Frame { n_bytes: 1, content: Content::Accepted };
+        assert_eq!(cell.decode(&[0x0D], Some(&asked)), accepted);
+    }
+
+    #[test]
+    fn the_manuals_write_of_gain_is_written_and_its_answer_read() {
+        let mut cell = cell("set_up = { SGAI = 123.456 }");
+        let asked = cell.opening()[1].clone();
+        let gain = [
+            0x21, 0x30, 0x30, 0x31, 0x3A, 0x53, 0x47, 0x41, 0x49, 0x3D, 0x31, 0x32, 0x33, 0x2E,
+            0x34, 0x35, 0x36, 0x0D,
+        ];
+        assert_eq!(asked.bytes, gain);
         let accepted = Found::Frame { n_bytes: 1, content: Content::Accepted };
         assert_eq!(cell.decode(&[0x0D], Some(&asked)), accepted);
     }

@@ -13,6 +13,7 @@ mod hbm_line;
 mod mantrabus;
 mod mantracourt;
 mod modbus;
+mod modbus_opening;
 mod pattern;
 mod session;
 mod text_line;
@@ -32,7 +33,7 @@ pub(crate) use mantrabus::{Settings as MantrabusSettings, checksum, to_nibbles};
 pub(crate) use mantracourt::Settings as MantracourtSettings;
 pub(crate) use modbus::{NumberType, Settings as ModbusSettings, crc as modbus_crc};
 pub(crate) use pattern::{Pattern, PatternValues};
-pub(crate) use text_line::Settings as TextLineSettings;
+pub(crate) use text_line::{IdentityLine, Settings as TextLineSettings};
 
 use crate::Quality;
 
@@ -41,15 +42,55 @@ pub const FRAME_BYTES_MAX: usize = 512;
 
 /// One line per driver.
 pub const DRIVERS: [DriverEntry; 8] = [
-    DriverEntry { name: "text-line", says: "lines of text by a pattern", open: text_line::open },
-    DriverEntry { name: "mantracourt", says: "Mantracourt ASCII", open: mantracourt::open },
-    DriverEntry { name: "mantrabus", says: "MANTRABUS-II binary", open: mantrabus::open },
-    DriverEntry { name: "dcon", says: "DCON: ADAM-4000, I-7000", open: dcon::open },
-    DriverEntry { name: "modbus-rtu", says: "Modbus RTU registers", open: modbus::open },
-    DriverEntry { name: "hbm-ascii", says: "HBM/HBK AED, FIT in text", open: hbm_ascii::open },
-    DriverEntry { name: "hbm-binary", says: "HBM/HBK AED, FIT in binary", open: hbm_binary::open },
-    DriverEntry { name: "cobs", says: "COBS + CRC frames", open: cobs_stream::open },
+    DriverEntry {
+        name: "text-line",
+        says: "lines of text by a pattern",
+        asks: "give settings.identify, such as \"ID?\\r\\n\", and settings.identity_line, such as \
+               \"ID {name}\"",
+        open: text_line::open,
+    },
+    DriverEntry {
+        name: "mantracourt",
+        says: "Mantracourt ASCII",
+        asks: ALWAYS,
+        open: mantracourt::open,
+    },
+    DriverEntry {
+        name: "mantrabus",
+        says: "MANTRABUS-II binary",
+        asks: "give settings.version_command, the number of VER in the manual's parameter table",
+        open: mantrabus::open,
+    },
+    DriverEntry { name: "dcon", says: "DCON: ADAM-4000, I-7000", asks: ALWAYS, open: dcon::open },
+    DriverEntry {
+        name: "modbus-rtu",
+        says: "Modbus RTU registers",
+        asks: "give settings.identify: { function = 17 }, { function = 43 }, or the function, \
+               address and number of registers that hold it",
+        open: modbus::open,
+    },
+    DriverEntry {
+        name: "hbm-ascii",
+        says: "HBM/HBK AED, FIT in text",
+        asks: ALWAYS,
+        open: hbm_ascii::open,
+    },
+    DriverEntry {
+        name: "hbm-binary",
+        says: "HBM/HBK AED, FIT in binary",
+        asks: ALWAYS,
+        open: hbm_binary::open,
+    },
+    DriverEntry {
+        name: "cobs",
+        says: "COBS + CRC frames",
+        asks: "give settings.identify = true",
+        open: cobs_stream::open,
+    },
 ];
+
+/// Of a driver that asks whatever its settings are.
+const ALWAYS: &str = "it asks by itself";
 
 /// A driver's line in [`DRIVERS`].
 pub struct DriverEntry {
@@ -57,6 +98,8 @@ pub struct DriverEntry {
     pub name: &'static str,
     /// What it speaks, in a few words.
     pub says: &'static str,
+    /// What makes it ask an instrument who it is.
+    pub asks: &'static str,
     /// Makes the protocol from the `[settings]` of a profile.
     pub open: fn(&toml::Table) -> Result<Box<dyn Protocol>, SettingsError>,
 }
@@ -125,6 +168,16 @@ pub trait Protocol: Send {
     /// Fields that the answer to a request to read brings.
     fn fields_asked(&self, request: &Request) -> Vec<usize> {
         vec![request.tag]
+    }
+
+    /// The address that a request goes to, where the bus has such.
+    fn station_asked(&self, request: &Request) -> Option<u16> {
+        self.stations().get(request.tag).copied()
+    }
+
+    /// Whether it has a way to ask an instrument who it is.
+    fn asks_who(&self) -> bool {
+        self.opening().iter().any(|request| request.purpose == Purpose::Identify)
     }
 
     /// What stands at the start of `bytes`, which came after `asked`.

@@ -5,6 +5,7 @@
 
 use serde::Deserialize;
 
+use super::modbus_opening::{self, Identify, Write};
 use super::{
     Content, Damage, FieldValue, Found, Protocol, Purpose, Request, SettingsError, ask, plain,
     settings, value,
@@ -20,6 +21,11 @@ const CRC: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_MODBUS);
 #[serde(deny_unknown_fields)]
 pub(crate) struct Settings {
     pub(crate) fields: Vec<Field>,
+    /// How each station says who it is; many cannot.
+    #[serde(default)]
+    pub(crate) identify: Option<Identify>,
+    #[serde(default)]
+    pub(crate) set_up: Vec<Write>,
 }
 
 /// One number in the registers of a station.
@@ -96,6 +102,8 @@ pub(super) fn open(table: &toml::Table) -> Result<Box<dyn Protocol>, SettingsErr
     if settings.fields.is_empty() {
         return Err(SettingsError("fields is empty".to_owned()));
     }
+    settings.identify.map_or(Ok(()), Identify::check)?;
+    settings.set_up.iter().try_for_each(Write::check)?;
     let mut blocks: Vec<Block> = Vec::new();
     for (number, field) in settings.fields.iter().enumerate() {
         let Field { station, function, address, .. } = *field;
@@ -191,12 +199,19 @@ impl Protocol for Modbus {
     fn stations(&self) -> Vec<u16> {
         let mut stations: Vec<u16> =
             self.blocks.iter().map(|block| u16::from(block.station)).collect();
+        stations.sort_unstable();
         stations.dedup();
         stations
     }
 
     fn opening(&self) -> Vec<Request> {
-        Vec::new()
+        let stations = self.stations().into_iter().map(|station| station as u8).enumerate();
+        let identify =
+            |identify: Identify| stations.map(move |(tag, station)| identify.request(station, tag));
+        let mut requests: Vec<Request> =
+            self.settings.identify.map(identify).into_iter().flatten().collect();
+        requests.extend(self.settings.set_up.iter().map(|write| write.request(0)));
+        requests
     }
 
     fn cycle(&self) -> Vec<Request> {
@@ -207,6 +222,10 @@ impl Protocol for Modbus {
         self.blocks.iter().enumerate().map(request).collect()
     }
 
+    fn station_asked(&self, request: &Request) -> Option<u16> {
+        request.bytes.first().map(|station| u16::from(*station))
+    }
+
     fn fields_asked(&self, request: &Request) -> Vec<usize> {
         let block = self.blocks.get(request.tag);
         let fields = block.into_iter().flat_map(|block| &block.fields);
@@ -214,6 +233,9 @@ impl Protocol for Modbus {
     }
 
     fn decode(&mut self, bytes: &[u8], asked: Option<&Request>) -> Found {
+        if let Some(asked) = asked.filter(|asked| asked.purpose != Purpose::Read) {
+            return modbus_opening::answer(bytes, asked);
+        }
         let noise = |damage| Found::Noise { n_bytes: 1, damage };
         let block = &self.blocks[asked.map_or(0, |asked| asked.tag).min(self.blocks.len() - 1)];
         if bytes[0] != block.station {

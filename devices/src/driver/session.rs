@@ -49,6 +49,10 @@ pub enum Decoded {
     Silent {
         /// The request.
         request: String,
+        /// What for.
+        purpose: Purpose,
+        /// The address that it went to, where the bus has such.
+        station: Option<u16>,
         /// Fields that it was to bring.
         fields: Vec<usize>,
         /// How long was waited [ns].
@@ -308,6 +312,8 @@ impl Session {
         self.drop_rest(decoded);
         decoded.push(Decoded::Silent {
             request: shown(&waiting.request.bytes),
+            purpose: waiting.request.purpose,
+            station: self.protocol.station_asked(&waiting.request),
             fields: match waiting.request.purpose {
                 Purpose::Read => self.protocol.fields_asked(&waiting.request),
                 _ => Vec::new(),

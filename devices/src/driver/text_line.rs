@@ -29,6 +29,12 @@ pub(crate) struct Settings {
     /// Sent for every line; without it the instrument talks unasked.
     #[serde(default)]
     pub(crate) request: Option<String>,
+    /// Sent when the port opens, to be answered by a line of the form of `identity_line`.
+    #[serde(default)]
+    pub(crate) identify: Option<String>,
+    /// `ID {name}`: a line of this form says who the instrument is, asked or not.
+    #[serde(default)]
+    pub(crate) identity_line: Option<String>,
     #[serde(default = "counter_bits")]
     pub(crate) sequence_bits: u32,
     #[serde(default = "counter_bits")]
@@ -46,6 +52,7 @@ fn counter_bits() -> u32 {
 struct TextLine {
     settings: Settings,
     pattern: Pattern,
+    identity: Option<IdentityLine>,
 }
 
 pub(super) fn open(table: &toml::Table) -> Result<Box<dyn Protocol>, SettingsError> {
@@ -58,7 +65,41 @@ pub(super) fn open(table: &toml::Table) -> Result<Box<dyn Protocol>, SettingsErr
             return Err(SettingsError(format!("{name} is {bits}, allowed are 1 to 64")));
         }
     }
-    Ok(Box::new(TextLine { settings, pattern }))
+    let identity = settings.identity_line.as_deref().map(IdentityLine::new).transpose()?;
+    if settings.identify.is_some() && identity.is_none() {
+        let form = "identity_line, such as \"ID {name}\"";
+        return Err(SettingsError(format!("identify needs {form}: what the answer looks like")));
+    }
+    Ok(Box::new(TextLine { settings, pattern, identity }))
+}
+
+/// What stands around the name in a line that says who the instrument is.
+#[derive(Debug, Clone)]
+pub(crate) struct IdentityLine {
+    before: String,
+    after: String,
+}
+
+impl IdentityLine {
+    pub(crate) fn new(form: &str) -> Result<Self, SettingsError> {
+        let around = form.split_once("{name}").filter(|(before, _)| !before.is_empty());
+        let (before, after) = around.ok_or_else(|| {
+            SettingsError(format!("identity_line is \"{form}\", expected text and then {{name}}"))
+        })?;
+        Ok(Self { before: before.to_owned(), after: after.to_owned() })
+    }
+
+    fn read(&self, line: &[u8]) -> Option<String> {
+        let name = line.strip_prefix(self.before.as_bytes())?;
+        let name = str::from_utf8(name.strip_suffix(self.after.as_bytes())?).ok()?.trim();
+        let is_name = !name.is_empty() && !name.contains(char::is_control);
+        is_name.then(|| name.to_owned())
+    }
+
+    /// The line of an instrument of that name, without its terminator.
+    pub(crate) fn write(&self, name: &str) -> String {
+        format!("{}{name}{}", self.before, self.after)
+    }
 }
 
 impl Protocol for TextLine {
@@ -67,8 +108,12 @@ impl Protocol for TextLine {
     }
 
     fn opening(&self) -> Vec<Request> {
+        let bytes = |text: &String| text.clone().into_bytes();
+        let identify = self.settings.identify.as_ref();
+        let identify = identify.map(|text| ask(bytes(text), Purpose::Identify, 0));
         let start = self.settings.start.as_ref();
-        start.map(|text| tell(text.clone().into_bytes(), Purpose::Configure)).into_iter().collect()
+        let start = start.map(|text| tell(bytes(text), Purpose::Configure));
+        identify.into_iter().chain(start).collect()
     }
 
     fn cycle(&self) -> Vec<Request> {
@@ -90,6 +135,9 @@ impl Protocol for TextLine {
         };
         if line.is_empty() {
             return Found::Skip { n_bytes };
+        }
+        if let Some(name) = self.identity.as_ref().and_then(|identity| identity.read(line)) {
+            return Found::Frame { n_bytes, content: Content::Identity(name) };
         }
         match self.pattern.read(line) {
             Ok(values) => Found::Frame { n_bytes, content: content(&values) },
@@ -168,6 +216,20 @@ mod tests {
         assert_eq!(arduino.decode(b"12", None), Found::Part);
         let endless = arduino.decode(&[b'7'; 300], None);
         assert_eq!(endless, Found::Noise { n_bytes: 300, damage: Damage::TooLong });
+    }
+
+    #[test]
+    fn a_board_that_is_asked_says_its_name_between_its_readings() {
+        let text = "pattern = \"{0}\"\nidentify = \"ID?\\r\"\nidentity_line = \"ID {name};\"";
+        let mut board = line(text);
+        assert_eq!(board.opening()[0].bytes, b"ID?\r");
+        let name = Content::Identity("roll board 2".to_owned());
+        let found = board.decode(b"ID roll board 2;\r\n", None);
+        assert_eq!(found, Found::Frame { n_bytes: 17, content: name });
+        assert_eq!(read(board.as_mut(), b"1.5\r\n").0, [1.5]);
+        assert!(!line("pattern = \"{0}\"").asks_who());
+        let error = open(&"pattern = \"{0}\"\nidentify = \"ID?\"".parse().unwrap()).err().unwrap();
+        assert!(error.to_string().contains("identify needs identity_line"), "{error}");
     }
 
     #[test]

@@ -62,6 +62,11 @@ impl Cable {
         bytes
     }
 
+    /// The speed that the host has set the port to [bit/s].
+    pub(super) fn baud(&self) -> Option<u32> {
+        Some(tcgetattr(&self.slave).ok()?.output_speed())
+    }
+
     /// Takes off the mark of exclusive use that a program leaves when it is killed.
     pub(super) fn release(&self) {
         ioctl_tiocnxcl(&self.slave).ok();

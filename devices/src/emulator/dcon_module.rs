@@ -51,8 +51,11 @@ impl DconModules {
         if text == "#**" {
             for tag in 0..self.held.len() {
                 let field = self.first_field(tag);
-                self.held[tag] = ((self.signal)(field, now_s), faults.n_repeats > 0);
-                faults.n_repeats = faults.n_repeats.saturating_sub(1);
+                self.held[tag] = if faults.repeats() {
+                    (self.held[tag].0, true)
+                } else {
+                    ((self.signal)(field, now_s), false)
+                };
             }
             return None;
         }
@@ -62,14 +65,15 @@ impl DconModules {
         let tag = modules.iter().position(|module| module.address == address)?;
         let first = self.first_field(tag);
         let n_channels = modules[tag].channels;
-        let newest = self.pace.newest(now_s, faults);
-        let value = |field: usize| self.data((self.signal)(field, newest.host_s), faults);
-        Some(match (lead, text.get(3..)?) {
-            ("#", "") => {
-                let fields: Vec<String> = (first..first + n_channels).map(value).collect();
-                format!(">{}", fields.concat())
-            }
-            ("#", channel) if channel.len() == 1 => format!(">{}", value(first)),
+        let order = text.get(3..)?;
+        if lead == "#" && order.len() <= 1 {
+            let newest = self.pace.newest(tag, now_s, faults);
+            let n_asked = if order.is_empty() { n_channels } else { 1 };
+            let value = |field: usize| self.data((self.signal)(field, newest.host_s), faults);
+            let fields: Vec<String> = (first..first + n_asked).map(value).collect();
+            return Some(format!(">{}", fields.concat())).filter(|_| !faults.skips());
+        }
+        Some(match (lead, order) {
             ("$", "M") => format!("!{address:02X}{NAME}"),
             ("$", "2") => {
                 let form = if self.settings.hexadecimal { 2 } else { 0 };
@@ -79,6 +83,9 @@ impl DconModules {
             ("$", "4") => {
                 let (value, was_read) = self.held[tag];
                 self.held[tag].1 = true;
+                if faults.skips() {
+                    return None;
+                }
                 let fresh = u8::from(!was_read);
                 format!(">{address:02X}{fresh}{}", self.data(value, faults))
             }
@@ -110,12 +117,8 @@ impl Emulator for DconModules {
                 text = body;
             }
             let text = String::from_utf8_lossy(text).into_owned();
-            let Some(answer) = self.answer(&text, now_s, faults) else { continue };
-            if faults.n_skips > 0 {
-                faults.n_skips -= 1;
-                continue;
-            }
-            out.extend(self.framed(&answer));
+            let answer = self.answer(&text, now_s, faults);
+            out.extend(answer.map(|answer| self.framed(&answer)).into_iter().flatten());
         }
     }
 

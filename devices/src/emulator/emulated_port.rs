@@ -9,6 +9,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use super::cable::Cable;
+use super::misread::misread;
 use super::{Emulator, Fault, Faults};
 use crate::clock::{Clock, NS_PER_S};
 use crate::realtime::become_realtime;
@@ -154,6 +155,11 @@ impl Bench {
         }
     }
 
+    /// The speeds of the instrument and of the port [bit/s], where the instrument's is commanded.
+    fn speeds(&self) -> Option<(u32, u32)> {
+        Some((self.faults.baud?, self.cable.as_ref()?.baud()?))
+    }
+
     fn turn(&mut self) {
         let now_ns = self.clock.now_ns();
         let now_s = now_ns as f64 / NS_PER_S;
@@ -162,7 +168,10 @@ impl Bench {
         }
         let mut out = Vec::new();
         if let Some(cable) = &self.cable {
-            let bytes = cable.read();
+            let mut bytes = cable.read();
+            if let Some((own, hosts)) = self.speeds() {
+                bytes = misread(&bytes, hosts, own);
+            }
             if !bytes.is_empty() {
                 self.emulator.receive(&bytes, now_s, &mut self.faults, &mut out);
             }
@@ -176,11 +185,13 @@ impl Bench {
             self.on_line.push_back((self.line_free_ns, bytes));
         }
         let now_ns = self.clock.now_ns();
+        let speeds = self.speeds();
         while !self.faults.stalled
             && let Some((_, bytes)) = self.on_line.pop_front_if(|(due_ns, _)| *due_ns <= now_ns)
         {
             if let Some(cable) = &mut self.cable {
-                cable.send(&bytes);
+                let read = speeds.map(|(own, hosts)| misread(&bytes, own, hosts));
+                cable.send(read.as_deref().unwrap_or(&bytes));
             }
         }
         if let Some(cable) = &mut self.cable {

@@ -17,6 +17,8 @@ pub enum Fault {
     DriftPpm(f64),
     /// The input is over-driven.
     Saturate(bool),
+    /// The instrument's line is set to so many bits per second, whatever the port is set to.
+    Baud(u32),
     /// The power fails for a moment: counters start anew.
     Restart,
 }
@@ -33,6 +35,7 @@ pub struct Faults {
     pub(super) drift_ppm: f64,
     pub(super) saturated: bool,
     pub(super) restart: bool,
+    pub(super) baud: Option<u32>,
 }
 
 impl Faults {
@@ -46,8 +49,23 @@ impl Faults {
             Fault::Skip(n_samples) => self.n_skips += n_samples,
             Fault::DriftPpm(drift_ppm) => self.drift_ppm = drift_ppm,
             Fault::Saturate(on) => self.saturated = on,
+            Fault::Baud(baud) => self.baud = Some(baud),
             Fault::Restart => self.restart = true,
         }
+    }
+
+    /// Whether the reading that is due is not sent.
+    pub(super) fn skips(&mut self) -> bool {
+        let is_skipped = self.n_skips > 0;
+        self.n_skips = self.n_skips.saturating_sub(1);
+        is_skipped
+    }
+
+    /// Whether the reading that is due is the one before once more.
+    pub(super) fn repeats(&mut self) -> bool {
+        let is_repeated = self.n_repeats > 0;
+        self.n_repeats = self.n_repeats.saturating_sub(1);
+        is_repeated
     }
 
     /// The value, or one beyond every range when the input is over-driven.

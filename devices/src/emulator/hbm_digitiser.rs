@@ -21,6 +21,8 @@ struct HbmDigitisers {
     streaming: bool,
     /// What each holds since `S98;MSV?;`.
     held: Vec<Option<f64>>,
+    /// What each gave of it last.
+    given: Vec<f64>,
 }
 
 pub(super) fn open_ascii(parts: Parts<'_>) -> Opened {
@@ -38,6 +40,7 @@ impl HbmDigitisers {
     fn new(stations: Vec<u8>, format: Option<HbmFormat>, pace: LinePace, signal: Signal) -> Self {
         Self {
             held: vec![None; stations.len().max(1)],
+            given: vec![0.0; stations.len().max(1)],
             stations,
             format,
             pace,
@@ -61,13 +64,20 @@ impl HbmDigitisers {
     }
 
     /// What one command without its semicolon brings.
-    fn obey(&mut self, command: &str, now_s: f64, faults: &Faults, out: &mut Vec<u8>) {
+    fn obey(&mut self, command: &str, now_s: f64, faults: &mut Faults, out: &mut Vec<u8>) {
         let select = command.strip_prefix('S').and_then(|station| station.parse::<u8>().ok());
         if let Some(station) = select {
             self.selected = Some(station);
-            let tag = self.stations.iter().position(|known| *known == station);
-            let held = tag.and_then(|tag| self.held[tag].take());
-            out.extend(held.map(|raw| self.written(raw)).into_iter().flatten());
+            let Some(tag) = self.stations.iter().position(|known| *known == station) else {
+                return;
+            };
+            let Some(held) = self.held[tag].take() else { return };
+            if !faults.repeats() {
+                self.given[tag] = held;
+            }
+            if !faults.skips() {
+                out.extend(self.written(self.given[tag]));
+            }
             return;
         }
         let everyone = self.selected == Some(EVERYONE);
@@ -91,8 +101,10 @@ impl HbmDigitisers {
                 self.pace.restart(now_s);
             }
             "MSV?" => {
-                let newest = self.pace.newest(now_s, faults);
-                out.extend(self.written(self.measured(tag, newest.host_s, faults)));
+                let newest = self.pace.newest(tag, now_s, faults);
+                if !faults.skips() {
+                    out.extend(self.written(self.measured(tag, newest.host_s, faults)));
+                }
             }
             "IDN?" => out.extend(b"HBM,AD104C,170123,P54\r\n"),
             _ if ["ASF", "COF", "ICR", "CSM", "NOV", "SPW"].contains(&&command[..3]) => {

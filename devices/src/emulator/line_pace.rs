@@ -1,5 +1,7 @@
 //! Which conversions an instrument's own clock has made by now.
 
+use std::collections::BTreeMap;
+
 use super::Faults;
 
 /// Conversions at a fixed rate by a clock that may be off.
@@ -7,6 +9,8 @@ pub(super) struct LinePace {
     rate_hz: f64,
     start_s: Option<f64>,
     n_made: u64,
+    /// The conversion that each station gave last.
+    given: BTreeMap<usize, u64>,
 }
 
 /// One conversion.
@@ -23,12 +27,13 @@ const AT_ONCE: u64 = 2000;
 
 impl LinePace {
     pub(super) fn new(rate_hz: f64) -> Self {
-        Self { rate_hz, start_s: None, n_made: 0 }
+        Self { rate_hz, start_s: None, n_made: 0, given: BTreeMap::new() }
     }
 
     pub(super) fn restart(&mut self, now_s: f64) {
         self.start_s = Some(now_s);
         self.n_made = 0;
+        self.given.clear();
     }
 
     /// Host seconds that one conversion takes: a fast clock converts more often.
@@ -36,11 +41,22 @@ impl LinePace {
         1.0 / (self.rate_hz * (1.0 + faults.drift_ppm * 1e-6))
     }
 
-    /// The newest conversion, for instruments that are asked.
-    pub(super) fn newest(&mut self, now_s: f64, faults: &Faults) -> Conversion {
+    /// The conversion that a station gives when it is asked: its newest, or where that is
+    /// commanded the one that it gave before.
+    pub(super) fn newest(&mut self, tag: usize, now_s: f64, faults: &mut Faults) -> Conversion {
         let start_s = *self.start_s.get_or_insert(now_s);
-        let index = ((now_s - start_s) / self.period_s(faults)).max(0.0) as u64;
+        let newest = ((now_s - start_s) / self.period_s(faults)).max(0.0) as u64;
+        let given = self.given.get(&tag).copied();
+        let index = given.filter(|_| faults.repeats()).unwrap_or(newest);
+        self.given.insert(tag, index);
         self.conversion(index, start_s, faults)
+    }
+
+    /// Whether a station has given its newest conversion already.
+    pub(super) fn is_given(&self, tag: usize, now_s: f64, faults: &Faults) -> bool {
+        let start_s = self.start_s.unwrap_or(now_s);
+        let newest = ((now_s - start_s) / self.period_s(faults)).max(0.0) as u64;
+        self.given.get(&tag) == Some(&newest)
     }
 
     /// The conversions since the last call, for instruments that send unasked.
@@ -72,14 +88,12 @@ pub(super) fn send_due(
     write: impl Fn(&Conversion, &Faults) -> Vec<u8>,
 ) {
     for conversion in due {
-        if faults.n_skips > 0 {
-            faults.n_skips -= 1;
+        if faults.skips() {
             continue;
         }
         let bytes = write(&conversion, faults);
         out.extend_from_slice(&bytes);
-        if faults.n_repeats > 0 {
-            faults.n_repeats -= 1;
+        if faults.repeats() {
             out.extend_from_slice(&bytes);
         }
     }

@@ -16,10 +16,9 @@ struct MantracourtCells {
     pace: LinePace,
     signal: Signal,
     heard: Heard,
-    /// Conversion that each station delivered last.
-    delivered: Vec<Option<u64>>,
-    /// What each station holds since `SNAP`.
+    /// What each station holds since `SNAP`, and what it gave of it last.
     snapshot: Vec<f64>,
+    given: Vec<f64>,
 }
 
 pub(super) fn open(parts: Parts<'_>) -> Opened {
@@ -30,8 +29,8 @@ pub(super) fn open(parts: Parts<'_>) -> Opened {
         pace,
         signal,
         heard: Heard::default(),
-        delivered: vec![None; n_stations],
         snapshot: vec![0.0; n_stations],
+        given: vec![0.0; n_stations],
     }))
 }
 
@@ -55,24 +54,31 @@ impl MantracourtCells {
             return None;
         }
         let tag = self.settings.stations.iter().position(|known| *known == station)?;
-        let newest = self.pace.newest(now_s, faults);
         let reading = format!("{}?", self.settings.read.to_ascii_uppercase());
         Some(match order.as_str() {
             "VER?" => number(f64::from(VERSION)),
-            "SYSN?" => number(self.snapshot[tag]),
+            "SYSN?" => {
+                if !faults.repeats() {
+                    self.given[tag] = self.snapshot[tag];
+                }
+                number(Some(self.given[tag]).filter(|_| !faults.skips())?)
+            }
             "STAT?" => {
                 // With SNAP a value is new by definition; a repeat is commanded.
-                let polled = !self.settings.snapshot && self.delivered[tag] == Some(newest.index);
+                let polled = !self.settings.snapshot && self.pace.is_given(tag, now_s, faults);
                 let old = polled || faults.n_repeats > 0;
-                faults.n_repeats = faults.n_repeats.saturating_sub(1);
                 let over = if faults.saturated { STAT_OVER } else { 0 };
                 number(f64::from(over + if old { STAT_OLD } else { 0 }))
             }
             _ if order == reading => {
-                self.delivered[tag] = Some(newest.index);
+                let newest = self.pace.newest(tag, now_s, faults);
+                if faults.skips() {
+                    return None;
+                }
                 number(self.value(tag, newest.host_s, faults))
             }
             "SNAP" | "RST" => String::new(),
+            written if written.contains('=') => String::new(),
             _ => "?".to_owned(),
         })
     }
@@ -88,10 +94,6 @@ impl Emulator for MantracourtCells {
         self.heard.extend(bytes);
         while let Some(command) = self.heard.next(|byte| byte == b'\r') {
             let answer = self.answer(&command, now_s, faults);
-            if faults.n_skips > 0 && answer.is_some() {
-                faults.n_skips -= 1;
-                continue;
-            }
             if let Some(answer) = answer {
                 out.extend_from_slice(answer.as_bytes());
                 out.push(b'\r');

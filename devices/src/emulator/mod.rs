@@ -14,6 +14,7 @@ mod heard;
 mod line_pace;
 mod mantrabus_cell;
 mod mantracourt_cell;
+mod misread;
 mod modbus_transmitter;
 mod openings;
 mod text_board;

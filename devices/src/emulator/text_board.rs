@@ -2,11 +2,14 @@
 
 use super::line_pace::{Conversion, LinePace, send_due};
 use super::{Emulator, Faults, Opened, Parts, Signal};
-use crate::driver::{Pattern, PatternValues, SettingsError, TextLineSettings};
+use crate::driver::{IdentityLine, Pattern, PatternValues, SettingsError, TextLineSettings};
+
+const NAME: &str = "rolltank emulated board";
 
 struct TextBoard {
     settings: TextLineSettings,
     pattern: Pattern,
+    identity: Option<IdentityLine>,
     pace: LinePace,
     signal: Signal,
     heard: Vec<u8>,
@@ -15,7 +18,8 @@ struct TextBoard {
 pub(super) fn open(parts: Parts<'_>) -> Opened {
     let (settings, pace, signal) = parts.read::<TextLineSettings>()?;
     let pattern = Pattern::new(&settings.pattern, settings.decimal_comma).map_err(SettingsError)?;
-    Ok(Box::new(TextBoard { settings, pattern, pace, signal, heard: Vec::new() }))
+    let identity = settings.identity_line.as_deref().map(IdentityLine::new).transpose()?;
+    Ok(Box::new(TextBoard { settings, pattern, identity, pace, signal, heard: Vec::new() }))
 }
 
 impl TextBoard {
@@ -40,12 +44,24 @@ impl TextBoard {
 
 impl Emulator for TextBoard {
     fn receive(&mut self, bytes: &[u8], now_s: f64, faults: &mut Faults, out: &mut Vec<u8>) {
-        let Some(request) = self.settings.request.clone() else { return };
         self.heard.extend_from_slice(bytes);
-        if self.heard.ends_with(request.as_bytes()) {
+        let heard = |order: &Option<String>| {
+            order.as_ref().is_some_and(|order| self.heard.ends_with(order.as_bytes()))
+        };
+        let (is_asked, is_read) = (heard(&self.settings.identify), heard(&self.settings.request));
+        if is_asked {
+            let said = self.identity.as_ref().map(|identity| identity.write(NAME));
+            out.extend(said.unwrap_or_default().into_bytes());
+            out.extend_from_slice(self.settings.terminators.as_bytes());
+        }
+        if is_read {
+            let newest = self.pace.newest(0, now_s, faults);
+            if !faults.skips() {
+                out.extend(self.line(&newest, faults));
+            }
+        }
+        if is_asked || is_read {
             self.heard.clear();
-            let newest = self.pace.newest(now_s, faults);
-            out.extend(self.line(&newest, faults));
         }
         let excess = self.heard.len().saturating_sub(256);
         self.heard.drain(..excess);

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const BY_ID: &str = "/dev/serial/by-id";
+/// Where the system keeps the stable names of serial ports.
+pub const BY_ID_FOLDER: &str = "/dev/serial/by-id";
 
 /// A port of this machine.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -14,9 +15,9 @@ pub struct FoundPort {
     pub device: PathBuf,
 }
 
-/// The serial ports of this machine, stable names first.
-pub fn found_ports() -> Vec<FoundPort> {
-    let mut ports: Vec<FoundPort> = entries(Path::new(BY_ID))
+/// The serial ports of this machine, those with a stable name in `by_id_folder` first.
+pub fn found_ports(by_id_folder: &Path) -> Vec<FoundPort> {
+    let mut ports: Vec<FoundPort> = entries(by_id_folder)
         .filter_map(|path| Some(FoundPort { device: fs::canonicalize(&path).ok()?, path }))
         .collect();
     ports.sort();
@@ -27,6 +28,19 @@ pub fn found_ports() -> Vec<FoundPort> {
     unnamed.sort();
     ports.extend(unnamed);
     ports
+}
+
+/// The name in `by_id_folder` of a port that is called by another, which replugging may change.
+pub fn stable_name(port: &Path, by_id_folder: &Path) -> Option<PathBuf> {
+    let (is_stable, device) = (port.starts_with(by_id_folder), fs::canonicalize(port).ok()?);
+    if is_stable {
+        return None;
+    }
+    let mut names: Vec<PathBuf> = entries(by_id_folder)
+        .filter(|name| fs::canonicalize(name).is_ok_and(|named| named == device))
+        .collect();
+    names.sort();
+    names.into_iter().next()
 }
 
 fn entries(folder: &Path) -> impl Iterator<Item = PathBuf> {
@@ -55,4 +69,33 @@ pub fn adapter_latency_s(path: &Path) -> Option<f64> {
     let wrote = before_ms > 1.0 && fs::write(&timer, "1").is_ok();
     let now_ms = if wrote { read()? } else { before_ms };
     Some(now_ms * 1e-3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::symlink;
+
+    #[test]
+    fn a_port_by_the_kernels_name_has_its_stable_one_looked_up() {
+        let folder = tempfile::tempdir().unwrap();
+        let (ports, by_id) = (folder.path().join("dev"), folder.path().join("by-id"));
+        for folder in [&ports, &by_id] {
+            fs::create_dir(folder).unwrap();
+        }
+        let [first, second] = ["ttyUSB0", "ttyUSB1"].map(|name| ports.join(name));
+        for port in [&first, &second] {
+            fs::write(port, "").unwrap();
+        }
+        let name = by_id.join("usb-FTDI_A1-if00-port0");
+        symlink("../dev/ttyUSB1", &name).unwrap();
+        symlink("../dev/ttyUSB7", by_id.join("usb-gone")).unwrap();
+        assert_eq!(stable_name(&second, &by_id), Some(name.clone()));
+        assert_eq!(stable_name(&first, &by_id), None);
+        assert_eq!(stable_name(&name, &by_id), None);
+        assert_eq!(stable_name(&second, &folder.path().join("none")), None);
+        let found = found_ports(&by_id);
+        let device = fs::canonicalize(&second).unwrap();
+        assert!(found.contains(&FoundPort { path: name, device }), "{found:?}");
+    }
 }

@@ -10,7 +10,7 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use super::{Arrival, LinkEvent, LinkOptions, Port, PortFault, found_ports};
+use super::{Arrival, BY_ID_FOLDER, LinkEvent, LinkOptions, Port, PortFault, found_ports};
 use crate::clock::Clock;
 use crate::driver::Session;
 use crate::realtime::become_realtime;
@@ -50,8 +50,7 @@ impl LinkThread {
         let mut link = Link { options, session, clock, outlet, stop: Arc::clone(&stop) };
         let thread = thread::Builder::new().name("port".to_owned()).spawn(move || {
             if link.options.realtime {
-                // Where the system does not allow it, the thread is an ordinary one.
-                become_realtime();
+                link.become_realtime();
             }
             link.serve();
         })?;
@@ -127,6 +126,17 @@ struct Link {
 }
 
 impl Link {
+    /// Where the system does not allow it, the thread is an ordinary one, which the log says.
+    fn become_realtime(&self) {
+        let port = self.options.path.display();
+        if become_realtime() {
+            tracing::info!(%port, "its thread has SCHED_FIFO");
+        } else {
+            tracing::info!(%port, "no SCHED_FIFO: times are worse while the machine is busy; \
+                LimitRTPRIO=20 or CAP_SYS_NICE allows it");
+        }
+    }
+
     /// Runs until it is stopped; after a panic, which is told as a loss of the link, anew.
     fn serve(&mut self) {
         // The next opening starts the session anew, and nothing else outlives a conversation.
@@ -147,7 +157,8 @@ impl Link {
                 Err(fault) => {
                     if told.as_ref() != Some(&fault) {
                         let at_ns = self.clock.now_ns();
-                        let present = found_ports().into_iter().map(|port| port.path).collect();
+                        let found = found_ports(Path::new(BY_ID_FOLDER));
+                        let present = found.into_iter().map(|port| port.path).collect();
                         told = Some(fault.clone());
                         self.outlet.send(LinkEvent::Absent { at_ns, fault, present });
                     }
