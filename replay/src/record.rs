@@ -67,6 +67,11 @@ pub enum Direction {
     Lost,
     /// They were dropped, as nobody took them; the bytes tell how many events.
     Dropped,
+    /// Nowhere: what follows on the link is in the recording before too, with its samples; here it
+    /// brings the decoder and the clock to where they were.
+    Before,
+    /// Nowhere: from here on what comes on the link is this recording's.
+    Begun,
 }
 
 /// An instrument with all that its driver needs to decode its bytes again.

@@ -13,7 +13,7 @@ use replay::{LinkLosses, Note};
 use tokio::sync::mpsc::Receiver;
 
 use super::attached::{Attached, Taken};
-use super::ended::{Ended, Over, Reload};
+use super::ended::{Ended, Over, Reload, keeps_links};
 use super::error::no_devices;
 use super::event::Event;
 use super::keeping::Keeper;
@@ -101,7 +101,8 @@ impl UnderWay<'_> {
         loop {
             let event = tokio::select! {
                 Some(event) = events.recv() => event,
-                Some(order) = orders.recv() => Event::Order(order),
+                // Once the links are the next session's, whatever anybody wants is too.
+                Some(order) = orders.recv(), if !self.hands_over() => Event::Order(order),
                 _ = ticks.tick() => Event::Tick,
             };
             self.state.n_events += 1;
@@ -123,22 +124,30 @@ impl UnderWay<'_> {
                 Event::Tick => self.tick(),
             }
             // The ports were closed when the end began, so that nothing comes behind these.
-            // Links that are handed over never fall silent, and nothing of theirs is waited for.
-            let ended = self.state.ended.as_ref();
-            if ended.is_some_and(|ended| ended.hands_over() || events.is_empty()) {
+            // Links that are handed over never fall silent; what they bring is the next session's.
+            if self.hands_over() || self.state.ended.is_some() && events.is_empty() {
                 self.end_runs();
             }
             if self.state.all_reported
                 && let Some(ended) = self.state.ended.take()
             {
                 self.renew_status();
-                let links = ended.hands_over().then(|| {
-                    let State { attached, ports, .. } = self.state;
-                    ((attached, ports, self.keeper.take_ring()), events)
-                });
-                return Over { ended, keeper: self.keeper, links };
+                let State { attached, ports, .. } = self.state;
+                let remembered = self.keeper.take_remembered();
+                let (mut links, mut left_off) = (None, Vec::new());
+                if ended.hands_over() {
+                    links = Some(((attached, ports, remembered), events));
+                } else {
+                    left_off = attached.iter().flat_map(Attached::left_off).collect();
+                }
+                return Over { ended, keeper: self.keeper, links, left_off };
             }
         }
+    }
+
+    /// Whether the links are the next session's already.
+    fn hands_over(&self) -> bool {
+        self.state.ended.as_ref().is_some_and(Ended::hands_over)
     }
 
     fn link(&mut self, device: usize, link: &LinkEvent) {
@@ -162,7 +171,7 @@ impl UnderWay<'_> {
         if let Some(attached) = self.state.attached.get_mut(device) {
             attached.take(link, now_ns as f64 / 1e9, &mut self.state.losses, &mut taken);
         }
-        self.keeper.remember(taken.joint.take());
+        taken.joint.take().into_iter().for_each(|joint| self.keeper.remember(joint));
         taken.records.drain(..).for_each(|record| self.keeper.push(record));
         taken
     }
@@ -222,7 +231,8 @@ impl UnderWay<'_> {
         }
     }
 
-    /// Closes the ports, unless they are; the rest follows when their last events were taken.
+    /// Hands the links over, or closes the ports, unless they are; the rest follows when their last
+    /// events were taken.
     fn end(&mut self, ended: Ended) {
         if matches!(ended, Ended::Terminated) {
             self.supervisor.stopping();
@@ -231,8 +241,8 @@ impl UnderWay<'_> {
             self.state.ended = Some(ended);
         }
         self.is_ending.store(true, Ordering::Release);
-        if self.state.ended.as_ref().is_some_and(Ended::hands_over) {
-            return;
+        if self.hands_over() {
+            return self.keeper.cut();
         }
         self.state.ports.iter().for_each(LinkThread::stop);
         self.state.ports.clear();
@@ -262,7 +272,8 @@ impl UnderWay<'_> {
         match read {
             Ok(campaign) => {
                 tracing::info!("the new campaign file is in force from the next rest on");
-                self.state.reload = Some(Box::new(Reload { campaign, text }));
+                let keeps_links = keeps_links(&self.campaign.live.devices, &campaign.live.devices);
+                self.state.reload = Some(Box::new(Reload { campaign, text, keeps_links }));
                 self.board.change(|status| {
                     status.reload_waits = true;
                     status.refused_reload = None;
