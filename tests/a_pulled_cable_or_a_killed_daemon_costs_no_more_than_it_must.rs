@@ -1,9 +1,10 @@
 //! Cables are pulled and put back, the daemon is killed: what was measured stays, the rest is told.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use devices::emulator::Fault;
-use replay::{Gap, LossKind, Record, Recorded, RunStop};
+use replay::{ExitStatus, Gap, LossKind, Record, Recorded, RunStart, RunStop};
 
 use super::campaign_folder::rolltank;
 use super::live_tank::{B1_PER_S, Daemon, LiveTank, RELEASED_S};
@@ -12,6 +13,10 @@ use super::live_tank::{B1_PER_S, Daemon, LiveTank, RELEASED_S};
 fn records(tank: &LiveTank) -> Vec<Record> {
     let files = tank.files("live", ".mcap");
     let [file] = &files[..] else { panic!("{files:?}") };
+    records_of(file)
+}
+
+fn records_of(file: &Path) -> Vec<Record> {
     let mut recorded = Recorded::open(file).expect("it is whole");
     std::iter::from_fn(|| recorded.next_record().expect("it can be read")).collect()
 }
@@ -30,6 +35,14 @@ fn stops(records: &[Record]) -> Vec<&RunStop> {
         _ => None,
     });
     stops.collect()
+}
+
+fn starts(records: &[Record]) -> Vec<&RunStart> {
+    let starts = records.iter().filter_map(|record| match record {
+        Record::RunStart(start) => Some(start),
+        _ => None,
+    });
+    starts.collect()
 }
 
 #[test]
@@ -71,6 +84,11 @@ fn a_cable_pulled_during_a_decay_ends_the_run_there_and_one_put_back_is_taken_up
     let stops = stops(&records);
     assert_eq!(stops[0].reason, "the record had a hole", "{stops:?}");
     assert!((stops[0].end_s - roll.start_s).abs() < 0.5, "{stops:?}");
+    assert_eq!(stops[0].exit_status, ExitStatus::Abort, "{stops:?}");
+    let starts = starts(&records);
+    assert_eq!(starts[0].run, stops[0].run, "{starts:?}");
+    // Long before it ended, it was told to have begun.
+    assert!(starts[0].time_s < stops[0].end_s - 1.0, "{starts:?} {stops:?}");
 
     let live = tank.text("results/identification.json");
     let replayed = rolltank(tank.path(), &["identify", ".", "--json"]);
@@ -166,6 +184,13 @@ fn a_killed_daemon_leaves_what_it_recorded_and_the_next_keeps_the_runs() {
     assert_eq!(files.len(), 2, "{said}");
     let recovered = Recorded::open(&files[0]).expect("it is whole");
     assert_eq!(recovered.metadata()["exit_status"], "recovered");
+    let records = records_of(&files[0]);
+    let (starts, stops) = (starts(&records), stops(&records));
+    assert_eq!(starts.len(), stops.len(), "every run that began has an end: {starts:?} {stops:?}");
+    let cut = stops.last().expect("the run that was cut");
+    assert_eq!((&cut.run, cut.exit_status), (&starts[starts.len() - 1].run, ExitStatus::Recovered));
+    let whole = stops.iter().find(|stop| stop.exit_status == ExitStatus::Success);
+    assert!(whole.is_some_and(|whole| whole.end_s < cut.start_s), "{stops:?}");
     let live = tank.text("results/identification.json");
     let results: serde_json::Value = serde_json::from_str(&live).expect("JSON");
     let recordings: Vec<&str> = results["runs"]

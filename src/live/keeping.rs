@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use devices::clock::WallClock;
 use replay::{
-    ClosedRecording, Disk, Exit, LIVE_SOURCE, LocalDisk, Progress, Provenance, Raw,
+    ClosedRecording, Disk, Exit, ExitStatus, LIVE_SOURCE, LocalDisk, Progress, Provenance, Raw,
     Record, Recorder, ReplayError, Settings,
 };
 
@@ -24,6 +24,8 @@ pub(super) struct Keeper {
     /// Where recordings go; none where somebody does not want any.
     folder: Option<PathBuf>,
     n_refused: u64,
+    /// Whether it was stopped by something else than the want of room.
+    has_failed: bool,
     remembered: Remembered,
     /// Whether what comes on the links is in the recording before.
     leads: bool,
@@ -77,6 +79,7 @@ impl Keeper {
             recorder: None,
             folder: None,
             n_refused: 0,
+            has_failed: false,
             remembered,
             leads: false,
             is_cut: false,
@@ -168,6 +171,7 @@ impl Keeper {
                 | ReplayError::TimeBackwards { .. }
         );
         self.n_refused += u64::from(is_record);
+        self.has_failed |= !is_record && !error.is_for_want_of_room();
         // A broken instrument may bring a thousand such numbers a second.
         if !is_record || self.n_refused.is_power_of_two() {
             let (n_refused, hint) = (self.n_refused, error.hint().unwrap_or_default());
@@ -183,8 +187,13 @@ impl Keeper {
 
     /// Ends the recording; [`ClosedRecording::convert`] gives it its name.
     pub(super) fn close(self, reason: &str) -> Result<Option<ClosedRecording>, LiveError> {
+        let status = match self.broke_off() {
+            true if self.has_failed => ExitStatus::Fail,
+            true => ExitStatus::Abort,
+            false => ExitStatus::Success,
+        };
         let Some(recorder) = self.recorder else { return Ok(None) };
-        Ok(Some(recorder.close(Exit::success(reason))?))
+        Ok(Some(recorder.close(Exit { status, reason: reason.to_owned() })?))
     }
 }
 

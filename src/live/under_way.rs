@@ -19,6 +19,7 @@ use super::event::Event;
 use super::keeping::Keeper;
 use super::provisional::Offers;
 use super::supervisor::Supervisor;
+use super::telling::{Begun, Decided};
 use crate::campaign::{self, Campaign, FILE_NAME};
 use crate::page::status::RecordedStatus;
 use crate::page::{Board, Order};
@@ -75,8 +76,11 @@ pub(super) struct State {
     pub(super) losses: LinkLosses,
     pub(super) found: Vec<Found>,
     pub(super) taken: Taken,
-    /// When the sample came by which each run was known to have ended [ns].
-    pub(super) decided_ns: BTreeMap<u64, u64>,
+    /// The run that is under way, as it was when it was last looked at.
+    pub(super) begun: Option<Begun>,
+    pub(super) n_begun: u64,
+    /// Runs that have ended and are still to be reported.
+    pub(super) decided: BTreeMap<u64, Decided>,
     pub(super) began_ns: u64,
     /// When the model last moved, and when a sample of its roll last came [ns].
     pub(super) moved_ns: u64,
@@ -226,8 +230,15 @@ impl UnderWay<'_> {
     /// Offers the run under way by the newest sample of its roll.
     fn offer(&mut self, samples: &[Sample], at_ns: u64) {
         let rolls = samples.iter().rev().find(|sample| sample.quantity == Quantity::Roll);
-        if let (Some(runs), Some(roll)) = (&self.runs, rolls) {
-            self.offers.offer(roll.time_s, at_ns, || runs.so_far());
+        let (Some(runs), Some(roll)) = (&self.runs, rolls) else { return };
+        let mut seen = None;
+        self.offers.offer(roll.time_s, at_ns, || {
+            let so_far = runs.so_far();
+            seen = Some(so_far.as_ref().map(Begun::of));
+            so_far
+        });
+        if let Some(begun) = seen {
+            self.take_so_far(begun);
         }
     }
 
@@ -258,6 +269,7 @@ impl UnderWay<'_> {
         self.read_clocks();
         runs.end(notes, &mut self.state.found);
         self.take_found(self.clock.now_ns());
+        self.break_off();
     }
 
     /// Reads the campaign file again; a wrong one changes nothing.
