@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use devices::Quantity;
 use devices::emulator::Fault;
 use replay::{ExitStatus, Gap, LossKind, Record, Recorded, RunStart, RunStop};
 
@@ -155,6 +156,18 @@ fn an_over_driven_instrument_is_masked_and_counted_and_ends_the_run() {
         })
         .sum();
     assert!(n_over_range > 100, "{n_over_range}");
+    // Sample by sample the recording tells which ones.
+    let (mut flags, mut n_flagged) = (String::new(), 0);
+    for record in &records {
+        match record {
+            Record::Quality(change) if change.channel == "roll" => flags.clone_from(&change.flags),
+            Record::Sample(sample) if sample.quantity == Quantity::Roll => {
+                n_flagged += u64::from(flags.contains("over range"));
+            }
+            _ => {}
+        }
+    }
+    assert_eq!((n_flagged, flags.contains("over range")), (n_over_range, false));
     let stops = stops(&records);
     assert_eq!(stops[0].reason, "the record had a hole", "{stops:?}");
     let live = tank.text("results/identification.json");

@@ -53,7 +53,7 @@ pub use number::CellFault;
 pub use player::Player;
 pub use record::{
     AttachedDevice, Calibration, CampaignFile, ChannelCounts, ClockReading, Direction, ExitStatus,
-    Gap, Loss, LossKind, Raw, Record, Rejection, RunResult, RunStart, RunStop,
+    Gap, Loss, LossKind, QualityChange, Raw, Record, Rejection, RunResult, RunStart, RunStop,
 };
 pub use recorded::Recorded;
 pub use recorder::{

@@ -33,6 +33,8 @@ pub enum Record {
     Gap(Gap),
     /// Samples that were lost, repeated, over range or damaged.
     Loss(Loss),
+    /// The flags of a channel's samples from here on.
+    Quality(QualityChange),
 }
 
 /// What happened on a link: bytes in one reading or one command, or the link itself.
@@ -287,6 +289,20 @@ pub struct Loss {
     pub count: u64,
 }
 
+/// What is wrong with a channel's samples from the next on, until it changes again; before the
+/// first of them nothing is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct QualityChange {
+    /// Time of the first sample of that quality [s].
+    pub time_s: f64,
+    /// Name of the device.
+    pub device: String,
+    /// Name of the channel.
+    pub channel: String,
+    /// Names of its flags, one after the other: over range, lagged; empty where nothing is wrong.
+    pub flags: String,
+}
+
 impl From<Sample> for Record {
     fn from(sample: Sample) -> Self {
         Self::Sample(sample)
@@ -315,6 +331,7 @@ impl Record {
             Self::Result(result) => result.time_s,
             Self::Gap(gap) => gap.time_s,
             Self::Loss(loss) => loss.time_s,
+            Self::Quality(change) => change.time_s,
         }
     }
 

@@ -7,8 +7,8 @@ use devices::port::LinkEvent;
 use devices::setup::DeviceConfig;
 use devices::{Attachment, InstrumentEvent, Sample};
 use replay::{
-    AttachedDevice, Calibration, Direction, Gap, LinkDecoder, LinkLosses, Loss, LossKind, Raw,
-    Record,
+    AttachedDevice, Calibration, Direction, Gap, LinkDecoder, LinkLosses, Loss, LossKind,
+    QualityChange, Raw, Record,
 };
 
 use super::channel::AttachedChannel;
@@ -118,7 +118,7 @@ impl Attached {
         if !quantities().eq(self.channels.iter().map(|channel| channel.quantity)) {
             self.channels = quantities().map(AttachedChannel::new).collect();
         }
-        self.channels.iter_mut().for_each(|channel| channel.counts = Counts::default());
+        self.channels.iter_mut().for_each(AttachedChannel::begin_again);
         Ok(())
     }
 
@@ -289,6 +289,13 @@ impl Attached {
                         reason: reason.to_owned(),
                     });
                     taken.records.extend(gap.map(Record::Gap));
+                    let change = channel.change(measured).map(|flags| QualityChange {
+                        time_s,
+                        device: device.to_owned(),
+                        channel: quantity.name().to_owned(),
+                        flags,
+                    });
+                    taken.records.extend(change.map(Record::Quality));
                     if self.tells {
                         channel.remember(measured);
                     }

@@ -18,6 +18,8 @@ pub(super) struct AttachedChannel {
     pub(super) last: Option<Measured>,
     /// Times [s] and raw readings of the last seconds.
     recent: VecDeque<(f64, f64)>,
+    /// What the recording says of the quality of its samples.
+    quality: Quality,
     /// Its last sample before its port was opened anew [s], until the first after it.
     pub(super) left_off_s: Option<f64>,
 }
@@ -26,7 +28,19 @@ impl AttachedChannel {
     /// A channel that has brought nothing yet.
     pub(super) fn new(quantity: Quantity) -> Self {
         let (counts, recent) = (Counts::default(), VecDeque::new());
-        Self { quantity, counts, last: None, recent, left_off_s: None }
+        Self { quantity, counts, last: None, recent, quality: Quality::GOOD, left_off_s: None }
+    }
+
+    /// Another recording begins, which knows nothing of what was before.
+    pub(super) fn begin_again(&mut self) {
+        (self.counts, self.quality) = (Counts::default(), Quality::GOOD);
+    }
+
+    /// The flags of a sample, where they are not those of the one before in the recording.
+    pub(super) fn change(&mut self, measured: &Measured) -> Option<String> {
+        let before = std::mem::replace(&mut self.quality, measured.quality);
+        let names = || self.quality.names().collect::<Vec<_>>().join(", ");
+        (before != self.quality).then(names)
     }
 
     /// Takes a sample that it brought.

@@ -119,7 +119,7 @@ impl Keeper {
                 self.remember(raw.clone());
                 true
             }
-            Record::Sample(_) | Record::Gap(_) | Record::Loss(_) => true,
+            Record::Sample(_) | Record::Gap(_) | Record::Loss(_) | Record::Quality(_) => true,
             _ => false,
         };
         if !(is_of_link && self.is_cut) {
