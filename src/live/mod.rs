@@ -30,6 +30,8 @@ mod remembered;
 mod reporting;
 mod session;
 mod showing;
+#[cfg(test)]
+mod stalled;
 mod supervisor;
 mod telling;
 mod under_way;
