@@ -89,7 +89,8 @@ fn replayed(recording: &Path) -> BTreeMap<Quantity, Vec<(u64, u64)>> {
 fn follow_each_other(recordings: &[PathBuf], said: &str) -> Vec<Held> {
     let all: Vec<Held> = recordings.iter().map(|recording| held(recording)).collect();
     for (recording, held) in recordings.iter().zip(&all) {
-        assert!(replayed(recording) == held.samples, "{recording:?} replays as it was: {said}");
+        let name = recording.display();
+        assert!(replayed(recording) == held.samples, "{name} replays as it was: {said}");
         let n_frames: usize = held.own.values().map(Vec::len).sum();
         let n_samples: usize = held.samples.values().map(Vec::len).sum();
         assert_eq!(n_frames, n_samples, "a sample of each frame, and none of a repeated: {said}");

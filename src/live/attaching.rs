@@ -105,15 +105,17 @@ impl UnderWay<'_> {
         self.keeper.lead(true);
         for attached in &mut self.state.attached {
             let first = recorded.iter().find(|raw| attached.is_named(&raw.device));
-            let lead = first.map(|first| attached.lead(first.time_s));
-            lead.into_iter().for_each(|lead| self.keeper.mark(lead));
+            if let Some(first) = first {
+                self.keeper.mark(attached.lead(first.time_s));
+            }
         }
         self.links_before(recorded);
         self.keeper.lead(false);
         let ends_s = recorded.last().map_or(0.0, |last| last.time_s);
         for attached in &mut self.state.attached {
-            let begun = attached.begin(ends_s);
-            begun.into_iter().for_each(|begun| self.keeper.mark(begun));
+            if let Some(begun) = attached.begin(ends_s) {
+                self.keeper.mark(begun);
+            }
         }
     }
 

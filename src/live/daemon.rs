@@ -89,7 +89,7 @@ pub fn run(
         };
         let left = session::run(plan, lent)?;
         left.closed.map_or(Ok(()), |closed| converting.start(closed))?;
-        (earlier, taken_over, left_off) = (left.results, left.handed_over, left.left_off);
+        (earlier, taken_over, left_off) = (left.results, left.handed_over, left.last_heard);
         awaits_room = matches!(left.ended, Ended::BrokenOff);
         match left.ended {
             Ended::Terminated => {

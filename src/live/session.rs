@@ -60,7 +60,7 @@ pub(super) struct Left {
     /// What the next one takes over.
     pub(super) handed_over: Option<TakenOver>,
     /// Where links that it does not take over were left.
-    pub(super) left_off: Vec<LeftOff>,
+    pub(super) last_heard: Vec<LeftOff>,
 }
 
 /// What the daemon lends to every session.
@@ -162,7 +162,7 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
     let recorded = if closed.is_some() { campaign } else { before };
     let recordings = recorded.recordings.clone();
     let handed_over = links.map(|links| TakenOver::new(links, next_sender));
-    Ok(Left { ended, closed, results, recordings, handed_over, left_off })
+    Ok(Left { ended, closed, results, recordings, handed_over, last_heard: left_off })
 }
 
 /// Puts the recording that begins now last in the campaign; its path. One that is not recorded has

@@ -109,7 +109,9 @@ fn a_stalled_loop_of(lines: &str) {
         Instrument::attach(&config, own_clock, outlet).expect("a thread");
     let mut attached = Attached::new(&config, latency_s).expect("it is attached");
     let known = attached.introduction(&config, "", 0.0).expect("it can be recorded");
-    known.into_iter().for_each(|record| keeper.push(record));
+    for record in known {
+        keeper.push(record);
+    }
     let live = follow(&mut attached, &mut keeper, &events, &clock);
     drop(thread);
     let closed = keeper.close("the story is over").expect("it is kept").expect("it is recorded");
