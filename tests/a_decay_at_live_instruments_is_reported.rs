@@ -102,7 +102,7 @@ fn what_a_decay_says_is_told_before_its_end_is_known_and_replaced_by_what_it_say
 fn a_long_day_is_several_recordings_that_follow_each_other_at_rests() {
     let tank = LiveTank::calm_at_speed(20.0);
     let mut daemon = Daemon::start(&tank, &["--rotate", "0.6"]);
-    daemon.wait_for("linked", 6);
+    daemon.wait_for("session begun", 3);
     let (status, said) = daemon.terminate();
     assert_eq!(status.code(), Some(0), "{said}");
     let recordings = tank.files("live", ".mcap");

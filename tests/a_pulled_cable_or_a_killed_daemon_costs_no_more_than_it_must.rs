@@ -1,9 +1,11 @@
 //! Cables are pulled and put back, the daemon is killed: what was measured stays, the rest is told.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
+use devices::Quantity;
 use devices::emulator::Fault;
-use replay::{Gap, LossKind, Record, Recorded, RunStop};
+use replay::{ExitStatus, Gap, LossKind, Record, Recorded, RunStart, RunStop};
 
 use super::campaign_folder::rolltank;
 use super::live_tank::{B1_PER_S, Daemon, LiveTank, RELEASED_S};
@@ -12,6 +14,10 @@ use super::live_tank::{B1_PER_S, Daemon, LiveTank, RELEASED_S};
 fn records(tank: &LiveTank) -> Vec<Record> {
     let files = tank.files("live", ".mcap");
     let [file] = &files[..] else { panic!("{files:?}") };
+    records_of(file)
+}
+
+fn records_of(file: &Path) -> Vec<Record> {
     let mut recorded = Recorded::open(file).expect("it is whole");
     std::iter::from_fn(|| recorded.next_record().expect("it can be read")).collect()
 }
@@ -24,12 +30,21 @@ fn gaps(records: &[Record]) -> Vec<&Gap> {
     gaps.collect()
 }
 
+/// Ends of runs, but of what began like one and became none.
 fn stops(records: &[Record]) -> Vec<&RunStop> {
     let stops = records.iter().filter_map(|record| match record {
-        Record::RunStop(stop) => Some(stop),
+        Record::RunStop(stop) if stop.exit_status != ExitStatus::Fail => Some(stop),
         _ => None,
     });
     stops.collect()
+}
+
+fn starts(records: &[Record]) -> Vec<&RunStart> {
+    let starts = records.iter().filter_map(|record| match record {
+        Record::RunStart(start) => Some(start),
+        _ => None,
+    });
+    starts.collect()
 }
 
 #[test]
@@ -71,6 +86,11 @@ fn a_cable_pulled_during_a_decay_ends_the_run_there_and_one_put_back_is_taken_up
     let stops = stops(&records);
     assert_eq!(stops[0].reason, "the record had a hole", "{stops:?}");
     assert!((stops[0].end_s - roll.start_s).abs() < 0.5, "{stops:?}");
+    assert_eq!(stops[0].exit_status, ExitStatus::Abort, "{stops:?}");
+    let starts = starts(&records);
+    let start = starts.iter().find(|start| start.run == stops[0].run).expect("it began");
+    // Before it ended, it was told to have begun.
+    assert!(start.time_s < stops[0].end_s, "{start:?} {stops:?}");
 
     let live = tank.text("results/identification.json");
     let replayed = rolltank(tank.path(), &["identify", ".", "--json"]);
@@ -137,6 +157,18 @@ fn an_over_driven_instrument_is_masked_and_counted_and_ends_the_run() {
         })
         .sum();
     assert!(n_over_range > 100, "{n_over_range}");
+    // Sample by sample the recording tells which ones.
+    let (mut flags, mut n_flagged) = (String::new(), 0);
+    for record in &records {
+        match record {
+            Record::Quality(change) if change.channel == "roll" => flags.clone_from(&change.flags),
+            Record::Sample(sample) if sample.quantity == Quantity::Roll => {
+                n_flagged += u64::from(flags.contains("over range"));
+            }
+            _ => {}
+        }
+    }
+    assert_eq!((n_flagged, flags.contains("over range")), (n_over_range, false));
     let stops = stops(&records);
     assert_eq!(stops[0].reason, "the record had a hole", "{stops:?}");
     let live = tank.text("results/identification.json");
@@ -166,6 +198,12 @@ fn a_killed_daemon_leaves_what_it_recorded_and_the_next_keeps_the_runs() {
     assert_eq!(files.len(), 2, "{said}");
     let recovered = Recorded::open(&files[0]).expect("it is whole");
     assert_eq!(recovered.metadata()["exit_status"], "recovered");
+    let records = records_of(&files[0]);
+    let (starts, stops) = (starts(&records), stops(&records));
+    let cut = stops.last().expect("the run that was cut");
+    assert_eq!((&cut.run, cut.exit_status), (&starts[starts.len() - 1].run, ExitStatus::Recovered));
+    let whole = stops.iter().find(|stop| stop.exit_status == ExitStatus::Success);
+    assert!(whole.is_some_and(|whole| whole.end_s < cut.start_s), "{stops:?}");
     let live = tank.text("results/identification.json");
     let results: serde_json::Value = serde_json::from_str(&live).expect("JSON");
     let recordings: Vec<&str> = results["runs"]

@@ -88,8 +88,8 @@ fn read_back(recording: &Path) -> (BTreeMap<String, Read>, BTreeMap<&'static str
                 let (session, read) = session.zip(read).expect("it was attached");
                 let mut decoded = Vec::new();
                 match raw.link_event() {
-                    LinkEvent::Opened { at_ns } => session.open(at_ns),
-                    LinkEvent::Received { at_ns, bytes, .. } => {
+                    Some(LinkEvent::Opened { at_ns }) => session.open(at_ns),
+                    Some(LinkEvent::Received { at_ns, bytes, .. }) => {
                         session.receive(&bytes, at_ns, &mut decoded);
                     }
                     other => panic!("{other:?}"),

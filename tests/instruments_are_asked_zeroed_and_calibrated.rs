@@ -226,7 +226,7 @@ fn a_whole_gain_is_taken_through_the_page_of_a_running_daemon() {
 
     tank.load_counts.store(counts(12), Ordering::Relaxed);
     daemon.signal("-HUP");
-    daemon.wait_for("linked", 4);
+    daemon.wait_for("session begun", 2);
     let force = |status: &str| -> Option<f64> {
         let status: serde_json::Value = serde_json::from_str(status).ok()?;
         status["devices"][1]["channels"][0]["value"].as_f64()

@@ -27,6 +27,7 @@ mod json_schema;
 mod kvlcc2_is_identified_as_published;
 mod live_tank;
 mod long_campaigns_stay_small;
+mod nothing_is_lost_between_two_recordings;
 mod run_finding_aftermath;
 mod run_finding_any_stream;
 mod run_finding_decays;

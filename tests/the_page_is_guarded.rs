@@ -147,7 +147,7 @@ fn a_zero_taken_on_the_page_is_logged_and_taken_back_and_taken_again() {
     std::thread::sleep(Duration::from_millis(300));
     let zero = post(&address, "/zero", &[], "{\"by\": \"C. Costa\", \"channel\": \"roll\"}");
     assert_eq!(zero.status, 200, "{}", zero.body);
-    daemon.wait_for("linked", 4);
+    daemon.wait_for("session begun", 2);
     let undo = "{\"by\": \"C. Costa\", \"what\": {\"undo\": {\"of\": 1}}}";
     assert_eq!(post(&address, "/act", &[], undo).status, 200);
     assert_eq!(post(&address, "/act", &[], undo).status, 409, "once");
@@ -156,7 +156,7 @@ fn a_zero_taken_on_the_page_is_logged_and_taken_back_and_taken_again() {
     assert_eq!(zeros.len(), 2, "{kept}");
     assert_ne!(zeros[0], "zero_raw = 0.0");
     assert_eq!(zeros[1], "zero_raw = 0.0", "the campaign file's own");
-    daemon.wait_for("linked", 6);
+    daemon.wait_for("session begun", 3);
     let again = undo.replace("of\": 1", "of\": 2");
     assert_eq!(post(&address, "/act", &[], &again).status, 200, "an undo can be undone");
     assert_eq!(post(&address, "/act", &[], undo).status, 200, "and the zero taken back again");

@@ -41,7 +41,7 @@ macro_rules! decoder {
 }
 
 /// Every kind of document.
-pub(crate) const DOCUMENTS: [Document; 11] = [
+pub(crate) const DOCUMENTS: [Document; 12] = [
     Document {
         topic: RAW_PREFIX,
         name: "raw",
@@ -169,6 +169,14 @@ pub(crate) const DOCUMENTS: [Document; 11] = [
         optional: &[],
         decode: decoder!(Loss),
     },
+    Document {
+        topic: "/quality",
+        name: "quality",
+        meaning: "what is wrong with a channel's samples from the next on; empty: nothing",
+        fields: &[("device", "string"), ("channel", "string"), ("flags", "string")],
+        optional: &[],
+        decode: decoder!(Quality),
+    },
 ];
 
 /// Raw bytes as their message.
@@ -256,6 +264,7 @@ pub(crate) fn write_document(record: &Record, message: &mut Vec<u8>) -> Option<u
         Record::Result(result) => (8, serde_json::to_writer(message, result)),
         Record::Gap(gap) => (9, serde_json::to_writer(message, gap)),
         Record::Loss(loss) => (10, serde_json::to_writer(message, loss)),
+        Record::Quality(change) => (11, serde_json::to_writer(message, change)),
     };
     written.expect("writing to memory cannot fail, and no key is anything but text");
     Some(place)

@@ -20,7 +20,7 @@ pub(crate) fn note(path: &Path, metadata: &BTreeMap<String, String>) -> Option<N
         .filter(|(key, ..)| number(key) > 0)
         .map(|(key, what, happened)| format!("{} {happened}", counted(number(key), what)))
         .collect();
-    if missing.is_empty() && !matches!(status, "recovered" | "fail") {
+    if missing.is_empty() && !matches!(status, "recovered" | "fail" | "abort") {
         return None;
     }
     let reason = metadata.get("reason").map_or("", String::as_str);

@@ -18,6 +18,7 @@ mod hint;
 mod import;
 mod json_field;
 mod link;
+mod link_decoder;
 mod link_losses;
 mod live_stream;
 mod mcap_inventory;
@@ -43,6 +44,7 @@ pub use columns::{ChannelColumn, Columns, TimeColumn};
 pub use error::ReplayError;
 pub use folder::list_recordings;
 pub use import::{ImportReport, import};
+pub use link_decoder::LinkDecoder;
 pub use link_losses::LinkLosses;
 pub use live_stream::LIVE_SOURCE;
 pub use nearest::edit_distance;
@@ -51,7 +53,7 @@ pub use number::CellFault;
 pub use player::Player;
 pub use record::{
     AttachedDevice, Calibration, CampaignFile, ChannelCounts, ClockReading, Direction, ExitStatus,
-    Gap, Loss, LossKind, Raw, Record, Rejection, RunResult, RunStart, RunStop,
+    Gap, Loss, LossKind, QualityChange, Raw, Record, Rejection, RunResult, RunStart, RunStop,
 };
 pub use recorded::Recorded;
 pub use recorder::{

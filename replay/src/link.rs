@@ -27,13 +27,14 @@ impl Raw {
         Some(Self { device: Arc::clone(device), time_s, direction, bytes })
     }
 
-    /// What happened, to be decoded anew.
-    pub fn link_event(&self) -> LinkEvent {
+    /// What happened, to be decoded anew; none where it only marks whose the rest is.
+    pub fn link_event(&self) -> Option<LinkEvent> {
         // Exact for 26 days of nanoseconds, far more than a recording lasts.
         let at_ns = (self.time_s * 1e9).round() as u64;
         let (bytes, decoded) = (self.bytes.clone(), Vec::new());
         let text = || String::from_utf8_lossy(&self.bytes).into_owned();
-        match self.direction {
+        Some(match self.direction {
+            Direction::Before | Direction::Begun => return None,
             Direction::Opened => LinkEvent::Opened { at_ns },
             Direction::Joined => {
                 LinkEvent::Round { at_ns, due_ns: text().parse().unwrap_or(at_ns) }
@@ -45,7 +46,7 @@ impl Raw {
             Direction::Dropped => {
                 LinkEvent::Overflow { n_events: text().parse().unwrap_or_default() }
             }
-        }
+        })
     }
 }
 
@@ -68,7 +69,7 @@ mod tests {
                 LinkEvent::Overflow { n_events: 7 },
             ] {
                 let raw = Raw::of_link(&device, &event, 0.5).expect("it is recorded");
-                assert_eq!(raw.link_event(), event);
+                assert_eq!(raw.link_event(), Some(event));
             }
         }
     }

@@ -4,13 +4,13 @@ use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 
 use devices::channel::Counted;
-use devices::driver::Session;
-use devices::{Attachment, InstrumentEvent, Interpreter, Sample};
+use devices::{Attachment, InstrumentEvent, Sample};
 
 use crate::error::ReplayError;
+use crate::link_decoder::LinkDecoder;
 use crate::link_losses::LinkLosses;
 use crate::note::Note;
-use crate::record::{AttachedDevice, Raw, Record};
+use crate::record::{AttachedDevice, Direction, Raw, Record};
 use crate::recorded::Recorded;
 use crate::stream::Stream;
 
@@ -31,7 +31,7 @@ pub(crate) fn is_live(metadata: &BTreeMap<String, String>) -> bool {
 pub(crate) struct LiveStream {
     path: PathBuf,
     recorded: Recorded,
-    attached: BTreeMap<String, (Session, Interpreter)>,
+    attached: BTreeMap<String, LinkDecoder>,
     waiting: VecDeque<Sample>,
     events: Vec<InstrumentEvent>,
     losses: LinkLosses,
@@ -56,7 +56,8 @@ impl LiveStream {
     fn attach(&mut self, device: AttachedDevice) -> Result<(), ReplayError> {
         let AttachedDevice { device, settings, .. } = device;
         let attachment = Attachment::from_text(&settings).map_err(|error| error.to_string());
-        let started = attachment.and_then(|known| known.start().map_err(|error| error.to_string()));
+        let started = attachment
+            .and_then(|known| LinkDecoder::new(&known).map_err(|error| error.to_string()));
         let started = started.map_err(|found| ReplayError::Field {
             path: self.path.clone(),
             topic: DEVICE_TOPIC.to_owned(),
@@ -69,9 +70,15 @@ impl LiveStream {
     }
 
     fn decode(&mut self, raw: &Raw) {
-        let Some((session, interpreter)) = self.attached.get_mut(&*raw.device) else { return };
-        interpreter.replay(&raw.link_event(), session, &mut self.events);
-        self.counted.extend(interpreter.counted());
+        let Some(decoder) = self.attached.get_mut(&*raw.device) else { return };
+        let Some(event) = raw.link_event() else {
+            return match raw.direction {
+                Direction::Before => decoder.lead(),
+                _ => decoder.begin(),
+            };
+        };
+        decoder.take(&event, &mut self.events);
+        self.counted.extend(decoder.counted());
         for event in self.events.drain(..) {
             self.losses.push(&raw.device, &event);
             self.waiting.extend(event.usable_sample());

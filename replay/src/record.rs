@@ -33,6 +33,8 @@ pub enum Record {
     Gap(Gap),
     /// Samples that were lost, repeated, over range or damaged.
     Loss(Loss),
+    /// The flags of a channel's samples from here on.
+    Quality(QualityChange),
 }
 
 /// What happened on a link: bytes in one reading or one command, or the link itself.
@@ -67,6 +69,11 @@ pub enum Direction {
     Lost,
     /// They were dropped, as nobody took them; the bytes tell how many events.
     Dropped,
+    /// Nowhere: what follows on the link is in the recording before too, with its samples; here it
+    /// brings the decoder and the clock to where they were.
+    Before,
+    /// Nowhere: from here on what comes on the link is this recording's.
+    Begun,
 }
 
 /// An instrument with all that its driver needs to decode its bytes again.
@@ -282,6 +289,20 @@ pub struct Loss {
     pub count: u64,
 }
 
+/// What is wrong with a channel's samples from the next on, until it changes again; before the
+/// first of them nothing is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct QualityChange {
+    /// Time of the first sample of that quality [s].
+    pub time_s: f64,
+    /// Name of the device.
+    pub device: String,
+    /// Name of the channel.
+    pub channel: String,
+    /// Names of its flags, one after the other: over range, lagged; empty where nothing is wrong.
+    pub flags: String,
+}
+
 impl From<Sample> for Record {
     fn from(sample: Sample) -> Self {
         Self::Sample(sample)
@@ -310,6 +331,7 @@ impl Record {
             Self::Result(result) => result.time_s,
             Self::Gap(gap) => gap.time_s,
             Self::Loss(loss) => loss.time_s,
+            Self::Quality(change) => change.time_s,
         }
     }
 

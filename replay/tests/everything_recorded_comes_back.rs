@@ -6,8 +6,8 @@ use std::time::Duration;
 use devices::Quantity::{Force, Roll};
 use replay::{
     AttachedDevice, Calibration, CampaignFile, ChannelCounts, ClockReading, Columns, Direction,
-    Exit, ExitStatus, Gap, LocalDisk, Loss, LossKind, PreTrigger, Provenance, Raw, Record,
-    Recorded, Recorder, Rejection, ReplayError, RunStop,
+    Exit, ExitStatus, Gap, LocalDisk, Loss, LossKind, PreTrigger, Provenance, QualityChange, Raw,
+    Record, Recorded, Recorder, Rejection, ReplayError, RunStop,
 };
 
 use crate::recorded_days::{live, raw, read, records, result, run_start, sample, time_s};
@@ -87,10 +87,16 @@ pub(crate) fn every_kind() -> Vec<Record> {
         }),
         Record::Loss(Loss {
             time_s: 0.5,
-            device: daq,
-            channel: roll,
+            device: daq.clone(),
+            channel: roll.clone(),
             kind: LossKind::Repeated,
             count: 7,
+        }),
+        Record::Quality(QualityChange {
+            time_s: 0.5,
+            device: daq,
+            channel: roll,
+            flags: "over range, lagged".to_owned(),
         }),
         Record::RunStop(RunStop {
             time_s: 0.6,

@@ -1,27 +1,33 @@
 //! One attached device: from what happened on its link to records, samples and its status.
 
-use std::collections::VecDeque;
 use std::sync::Arc;
 
-use devices::channel::{Counted, Counts, zero_from_readings};
-use devices::driver::Session;
+use devices::channel::{Counted, Counts};
 use devices::port::LinkEvent;
 use devices::setup::DeviceConfig;
-use devices::{Attachment, InstrumentEvent, Interpreter, Measured, Quality, Quantity, Sample};
-use replay::{AttachedDevice, Calibration, Gap, LinkLosses, Loss, LossKind, Raw, Record};
+use devices::{Attachment, InstrumentEvent, Sample};
+use replay::{
+    AttachedDevice, Calibration, Direction, Gap, LinkDecoder, LinkLosses, Loss, LossKind,
+    QualityChange, Raw, Record,
+};
 
+use super::channel::AttachedChannel;
+use super::ended::LeftOff;
 use super::error::LiveError;
-use crate::page::status::{ChannelStatus, DeviceStatus, RecentRaw};
+use crate::page::status::DeviceStatus;
 
 /// A device of the session.
 pub(super) struct Attached {
     name: Arc<str>,
-    interpreter: Interpreter,
+    /// Decodes the bytes as a replay will; the thread of the port may know more of the link than
+    /// the recording holds.
+    decoder: LinkDecoder,
     /// What its adapter may hold back [s].
     latency_s: f64,
-    /// Decodes the bytes anew as a replay will, where the recording joins a link that was open; the
-    /// thread of the port knows more of it than the recording holds.
-    joined: Option<Joined>,
+    /// Whether the recording follows the link: it saw its opening, or joined it.
+    follows: bool,
+    /// Whether what happens is still to be told, on the page and in the log.
+    tells: bool,
     channels: Vec<AttachedChannel>,
     events: Vec<InstrumentEvent>,
     /// Why samples are missing, until they come again.
@@ -29,39 +35,8 @@ pub(super) struct Attached {
     pub(super) status: DeviceStatus,
 }
 
-struct Joined {
-    session: Session,
-    has_begun: bool,
-}
-
-impl Joined {
-    /// Where this recording begins to follow the link, when it does with this event.
-    fn begins(&mut self, link: &LinkEvent) -> Option<LinkEvent> {
-        let at = match link {
-            LinkEvent::Opened { .. } | LinkEvent::Round { .. } => link.clone(),
-            LinkEvent::Received { at_ns, .. } if !self.session.asks() => {
-                LinkEvent::Round { at_ns: *at_ns, due_ns: *at_ns }
-            }
-            _ => return None,
-        };
-        self.has_begun = true;
-        Some(at)
-    }
-}
-
-struct AttachedChannel {
-    quantity: Quantity,
-    counts: Counts,
-    last: Option<Measured>,
-    /// Times [s] and raw readings of the last seconds.
-    recent: VecDeque<(f64, f64)>,
-}
-
 /// Gaps so long [s] are each told in the log.
 const LONG_GAP_S: f64 = 0.5;
-/// Raw readings so old [s] are forgotten; a zero is taken from those before.
-const RECENT_S: f64 = 5.0;
-
 /// What one event means.
 #[derive(Default)]
 pub(super) struct Taken {
@@ -75,40 +50,17 @@ pub(super) struct Taken {
     pub(super) counted: Vec<(usize, Counted)>,
 }
 
-impl AttachedChannel {
-    fn remember(&mut self, measured: &Measured) {
-        self.last = Some(*measured);
-        let time_s = measured.sample.time_s;
-        if measured.quality.is_usable() {
-            self.recent.push_back((time_s, measured.raw));
-        }
-        while self.recent.front().is_some_and(|(at_s, _)| *at_s < time_s - RECENT_S) {
-            self.recent.pop_front();
-        }
-    }
-
-    /// Mean and standard deviation of the raw readings of the last seconds, and how many they are.
-    fn recent(&self) -> Option<RecentRaw> {
-        let raw: Vec<f64> = self.recent.iter().map(|(_, raw)| *raw).collect();
-        let (mean, sd) = zero_from_readings(&raw).ok()?;
-        Some(RecentRaw { n_readings: raw.len(), mean, sd })
-    }
-}
-
 impl Attached {
-    pub(super) fn new(config: &DeviceConfig, interpreter: Interpreter, latency_s: f64) -> Self {
-        let channel = |quantity| AttachedChannel {
-            quantity,
-            counts: Counts::default(),
-            last: None,
-            recent: VecDeque::new(),
-        };
-        Self {
+    pub(super) fn new(config: &DeviceConfig, latency_s: f64) -> Result<Self, LiveError> {
+        let attachment = Attachment { latency_s, device: config.clone() };
+        let channels = config.channels.iter().map(|of| AttachedChannel::new(of.quantity));
+        Ok(Self {
             name: config.name.as_str().into(),
-            interpreter,
+            decoder: LinkDecoder::new(&attachment)?,
             latency_s,
-            joined: None,
-            channels: config.channels.iter().map(|of| channel(of.quantity)).collect(),
+            follows: true,
+            tells: true,
+            channels: channels.collect(),
             events: Vec::new(),
             lost_because: None,
             status: DeviceStatus {
@@ -116,7 +68,7 @@ impl Attached {
                 port: config.port.display().to_string(),
                 ..DeviceStatus::default()
             },
-        }
+        })
     }
 
     /// What the recording says of the device and its channels before the first byte.
@@ -160,12 +112,67 @@ impl Attached {
 
     /// Another recording goes on with the open link, and knows nothing of what was before.
     pub(super) fn begin_again(&mut self, config: &DeviceConfig) -> Result<(), LiveError> {
-        let (session, interpreter) = self.attachment(config).start()?;
-        self.interpreter = interpreter;
-        self.joined = Some(Joined { session, has_begun: false });
-        self.lost_because = None;
-        self.channels.iter_mut().for_each(|channel| channel.counts = Counts::default());
+        self.decoder = LinkDecoder::new(&self.attachment(config))?;
+        (self.follows, self.tells) = (false, false);
+        let quantities = || config.channels.iter().map(|of| of.quantity);
+        if !quantities().eq(self.channels.iter().map(|channel| channel.quantity)) {
+            self.channels = quantities().map(AttachedChannel::new).collect();
+        }
+        self.channels.iter_mut().for_each(AttachedChannel::begin_again);
         Ok(())
+    }
+
+    /// What comes next is in the recording before; the mark of that.
+    pub(super) fn lead(&mut self, time_s: f64) -> Record {
+        self.decoder.lead();
+        self.mark(time_s, Direction::Before)
+    }
+
+    /// What comes next is the recording's own; the mark of that, where something came before.
+    pub(super) fn begin(&mut self, time_s: f64) -> Option<Record> {
+        if !self.decoder.leads() {
+            return None;
+        }
+        self.decoder.begin();
+        Some(self.mark(time_s, Direction::Begun))
+    }
+
+    fn mark(&self, time_s: f64, direction: Direction) -> Record {
+        Record::Raw(Raw { device: Arc::clone(&self.name), time_s, direction, bytes: Vec::new() })
+    }
+
+    /// What happens from here on was not told yet.
+    pub(super) fn tell(&mut self) {
+        self.tells = true;
+    }
+
+    /// Where its channels are left when its port is closed.
+    pub(super) fn left_off(&self) -> impl Iterator<Item = LeftOff> {
+        let device = &self.name;
+        self.channels.iter().filter_map(|channel| {
+            let time_s = channel.last?.sample.time_s;
+            Some(LeftOff { device: Arc::clone(device), quantity: channel.quantity, time_s })
+        })
+    }
+
+    /// Its port was opened anew: samples are missing since its channels were left.
+    pub(super) fn leave_off(&mut self, left_off: &[LeftOff]) {
+        for LeftOff { device, quantity, time_s } in left_off {
+            let own = self.channels.iter_mut().filter(|_| *device == self.name);
+            own.filter(|channel| channel.quantity == *quantity)
+                .for_each(|channel| channel.left_off_s = Some(*time_s));
+        }
+    }
+
+    /// Where the recording begins to follow the link, when it does with this event.
+    fn joint(&self, link: &LinkEvent) -> Option<LinkEvent> {
+        match link {
+            LinkEvent::Round { .. } => Some(link.clone()),
+            LinkEvent::Received { at_ns, .. } if !self.decoder.asks() => {
+                Some(LinkEvent::Round { at_ns: *at_ns, due_ns: *at_ns })
+            }
+            _ => None,
+        }
     }
 
     /// Takes what happened; what a recording that joins the link cannot understand yet is none of
@@ -177,15 +184,28 @@ impl Attached {
         losses: &mut LinkLosses,
         taken: &mut Taken,
     ) {
-        if let Some(joined) = self.joined.as_mut().filter(|joined| !joined.has_begun) {
-            let Some(begins) = joined.begins(link) else { return };
-            self.take_next(&begins, now_s, losses, taken);
-            if begins == *link {
+        match link {
+            LinkEvent::Opened { .. } => self.follows = true,
+            // What was asked or said in between is not known.
+            LinkEvent::Overflow { .. } => self.follows = false,
+            LinkEvent::Round { .. } if self.follows => {
+                taken.joint = Raw::of_link(&self.name, link, now_s);
                 return;
             }
-        } else if matches!(link, LinkEvent::Round { .. }) {
-            taken.joint = Raw::of_link(&self.name, link, now_s);
-            return;
+            LinkEvent::Round { .. }
+            | LinkEvent::Sent { .. }
+            | LinkEvent::Waited { .. }
+            | LinkEvent::Received { .. }
+                if !self.follows =>
+            {
+                let Some(joint) = self.joint(link) else { return };
+                self.follows = true;
+                self.take_next(&joint, now_s, losses, taken);
+                if joint == *link {
+                    return;
+                }
+            }
+            _ => {}
         }
         self.take_next(link, now_s, losses, taken);
     }
@@ -200,20 +220,24 @@ impl Attached {
         taken.records.extend(Raw::of_link(&self.name, link, now_s).map(Record::Raw));
         self.note_link(link);
         let mut events = std::mem::take(&mut self.events);
-        match &mut self.joined {
-            Some(Joined { session, .. }) => self.interpreter.replay(link, session, &mut events),
-            None => self.interpreter.interpret(link, &mut events),
+        self.decoder.take(link, &mut events);
+        if self.decoder.leads() {
+            self.events = events;
+            return;
         }
         let before: Vec<Counts> = self.channels.iter().map(|channel| channel.counts).collect();
-        for (channel, (_, counts)) in self.channels.iter_mut().zip(self.interpreter.counts()) {
+        for (channel, (_, counts)) in self.channels.iter_mut().zip(self.decoder.counts()) {
             channel.counts = counts;
         }
-        taken.counted.extend(self.interpreter.counted().map(|counted| (0, counted)));
+        taken.counted.extend(self.decoder.counted().map(|counted| (0, counted)));
         let mut missing = 0;
         for event in &events {
             taken.samples.extend(event.usable_sample());
             losses.push(&self.name, event);
             missing += self.meaning(event, now_s, taken);
+            if self.tells {
+                self.tell_of(event);
+            }
         }
         events.clear();
         self.events = events;
@@ -237,9 +261,12 @@ impl Attached {
 
     fn note_link(&mut self, link: &LinkEvent) {
         if let LinkEvent::Overflow { n_events } = link {
-            self.status.n_dropped += n_events;
             self.lost_because = Some(format!("{n_events} events of the port found no place"));
-            tracing::error!(device = &*self.name, n_events, "events of the port found no place");
+            if self.tells {
+                self.status.n_dropped += n_events;
+                let device = &*self.name;
+                tracing::error!(device, n_events, "events of the port found no place");
+            }
         }
     }
 
@@ -248,23 +275,38 @@ impl Attached {
         let device = &*self.name;
         match event {
             InstrumentEvent::Sample(measured) => {
-                self.status.trouble = None;
-                if measured.sample.value.is_finite() {
+                let Sample { quantity, time_s, value } = measured.sample;
+                let channels = self.channels.iter_mut();
+                for channel in channels.filter(|channel| channel.quantity == quantity) {
+                    let reason = "the ports were opened anew for another campaign file";
+                    let gap = channel.left_off_s.take().map(|left_s| Gap {
+                        time_s: now_s,
+                        device: device.to_owned(),
+                        channel: quantity.name().to_owned(),
+                        start_s: left_s,
+                        end_s: time_s,
+                        lost: None,
+                        reason: reason.to_owned(),
+                    });
+                    taken.records.extend(gap.map(Record::Gap));
+                    let change = channel.change(measured).map(|flags| QualityChange {
+                        time_s,
+                        device: device.to_owned(),
+                        channel: quantity.name().to_owned(),
+                        flags,
+                    });
+                    taken.records.extend(change.map(Record::Quality));
+                    if self.tells {
+                        channel.remember(measured);
+                    }
+                }
+                if value.is_finite() {
                     taken.records.push(Record::Sample(measured.sample));
                 }
-                let of = measured.sample.quantity;
-                let channels = self.channels.iter_mut().filter(|channel| channel.quantity == of);
-                channels.for_each(|channel| channel.remember(measured));
             }
             InstrumentEvent::Gap { from_s, to_s, n_missing } => {
                 let reason = self.lost_because.take();
                 let reason = reason.unwrap_or_else(|| "samples are missing".to_owned());
-                self.status.n_gaps += 1;
-                let n_gaps = self.status.n_gaps;
-                // A bad line may lose a sample a second all day.
-                if to_s - from_s >= LONG_GAP_S || n_gaps.is_power_of_two() {
-                    tracing::warn!(device, from_s, to_s, n_missing, n_gaps, "gap: {reason}");
-                }
                 taken.records.extend(self.channels.iter().map(|channel| {
                     Record::Gap(Gap {
                         time_s: now_s,
@@ -276,23 +318,43 @@ impl Attached {
                         reason: reason.clone(),
                     })
                 }));
+                if self.tells {
+                    self.status.n_gaps += 1;
+                    let n_gaps = self.status.n_gaps;
+                    // A bad line may lose a sample a second all day.
+                    if to_s - from_s >= LONG_GAP_S || n_gaps.is_power_of_two() {
+                        tracing::warn!(device, from_s, to_s, n_missing, n_gaps, "gap: {reason}");
+                    }
+                }
                 return n_missing.unwrap_or(0);
             }
+            InstrumentEvent::LinkLost { seen, .. } => {
+                self.lost_because = Some(format!("the link was lost: {seen}"));
+            }
+            InstrumentEvent::Restarted { .. } => {
+                self.lost_because = Some("the instrument started anew".to_owned());
+            }
+            _ => {}
+        }
+        0
+    }
+
+    /// Tells on the page and in the log what an event means, once.
+    fn tell_of(&mut self, event: &InstrumentEvent) {
+        let device = &*self.name;
+        match event {
+            InstrumentEvent::Sample(_) => self.status.trouble = None,
             InstrumentEvent::Linked { .. } => {
-                // A recording that joins an open link hears of its opening again.
-                if !std::mem::replace(&mut self.status.linked, true) {
-                    tracing::info!(device, port = self.status.port, "linked");
-                }
+                self.status.linked = true;
+                tracing::info!(device, port = self.status.port, "linked");
             }
             InstrumentEvent::LinkLost { seen, .. } => {
                 self.status.linked = false;
                 self.status.n_losses += 1;
-                self.lost_because = Some(format!("the link was lost: {seen}"));
                 self.status.trouble.clone_from(&self.lost_because);
                 tracing::error!(device, port = self.status.port, seen, "link lost");
             }
             InstrumentEvent::Restarted { at_s } => {
-                self.lost_because = Some("the instrument started anew".to_owned());
                 tracing::warn!(device, at_s, "the instrument started anew");
             }
             InstrumentEvent::Identity(text) => {
@@ -305,25 +367,14 @@ impl Attached {
                 tracing::error!(device, hint, "{trouble}");
                 self.status.trouble = Some(trouble.to_string());
             }
-            InstrumentEvent::Overflow { .. } => {}
+            InstrumentEvent::Gap { .. } | InstrumentEvent::Overflow { .. } => {}
         }
-        0
     }
 
     /// The device as it is now.
     pub(super) fn status(&self) -> DeviceStatus {
-        let channel = |channel: &AttachedChannel| ChannelStatus {
-            quantity: channel.quantity,
-            unit: channel.quantity.unit(),
-            value: channel.last.map(|last| last.sample.value),
-            time_s: channel.last.map(|last| last.sample.time_s),
-            quality: channel.last.map_or(Quality::GOOD, |last| last.quality).names().collect(),
-            bound_s: channel.last.map(|last| last.bound_s),
-            recent: channel.recent(),
-            counts: channel.counts,
-        };
         DeviceStatus {
-            channels: self.channels.iter().map(channel).collect(),
+            channels: self.channels.iter().map(AttachedChannel::status).collect(),
             ..self.status.clone()
         }
     }

@@ -5,34 +5,36 @@ use std::sync::Arc;
 use devices::clock::{Clock, WallClock};
 use devices::port::LinkThread;
 use devices::{AttachedInstrument, Instrument, Quantity};
-use replay::{CampaignFile, ClockReading, PreTrigger, Record};
+use replay::{CampaignFile, ClockReading, Raw, Record};
 use tokio::sync::mpsc::{self, Receiver, Sender};
 
 use super::attached::Attached;
+use super::ended::LeftOff;
 use super::error::LiveError;
 use super::event::{EVENTS_WAITING, Event};
+use super::remembered::Remembered;
 use super::under_way::UnderWay;
 
-/// What goes over from a session that is not recorded to the one that is: no byte is lost between.
+/// What goes over from one session to the next: no byte is lost between.
 pub(super) struct TakenOver {
     pub(super) attached: Vec<Attached>,
     pub(super) ports: Vec<LinkThread>,
-    /// What happened on the links lately, oldest first.
-    pub(super) ring: PreTrigger,
+    /// What happened on the links lately.
+    pub(super) remembered: Remembered,
     /// Where their threads send what happens, and where that is taken.
     pub(super) events: (Sender<Event>, Receiver<Event>),
 }
 
 /// Instruments of the session before.
-pub(super) type Before = (Vec<Attached>, Vec<LinkThread>, PreTrigger);
+pub(super) type Before = (Vec<Attached>, Vec<LinkThread>, Remembered);
 
 impl TakenOver {
     /// Links with the receiving end of their events, and the sending one.
     pub(super) fn new(
-        ((attached, ports, ring), receiver): (Before, Receiver<Event>),
+        ((attached, ports, remembered), receiver): (Before, Receiver<Event>),
         sender: Sender<Event>,
     ) -> Self {
-        Self { attached, ports, ring, events: (sender, receiver) }
+        Self { attached, ports, remembered, events: (sender, receiver) }
     }
 
     /// What is taken over, if anything, and the queue of events, a new one if need be.
@@ -40,7 +42,9 @@ impl TakenOver {
         taken_over: Option<Self>,
     ) -> (Option<Before>, (Sender<Event>, Receiver<Event>)) {
         match taken_over {
-            Some(Self { attached, ports, ring, events }) => (Some((attached, ports, ring)), events),
+            Some(Self { attached, ports, remembered, events }) => {
+                (Some((attached, ports, remembered)), events)
+            }
             None => (None, mpsc::channel(EVENTS_WAITING)),
         }
     }
@@ -54,19 +58,20 @@ impl UnderWay<'_> {
         events: &Sender<Event>,
         text: String,
         before: Option<Before>,
+        left_off: &[LeftOff],
     ) -> Result<(), LiveError> {
         let now_ns = self.clock.now_ns();
         self.state.began_ns = now_ns;
         (self.state.moved_ns, self.state.roll_ns) = (now_ns, now_ns);
-        let begins_s = before.as_ref().and_then(|(_, _, ring)| ring.begins_s());
+        let begins_s = before.as_ref().and_then(|(_, _, remembered)| remembered.begins_s());
         let time_s = begins_s.unwrap_or(now_ns as f64 / 1e9);
         self.keeper.push(Record::Campaign(CampaignFile { time_s, text }));
         self.read_clocks();
-        let mut ring = None;
+        let mut remembered = None;
         match before {
             Some((attached, ports, before)) => {
                 (self.state.attached, self.state.ports) = (attached, ports);
-                ring = Some(before);
+                remembered = Some(before);
             }
             None => self.open_ports(events)?,
         }
@@ -77,20 +82,51 @@ impl UnderWay<'_> {
             for record in attached.introduction(config, profile, time_s)? {
                 self.keeper.push(record);
             }
-            if ring.is_some() {
+            if remembered.is_some() {
                 attached.begin_again(config)?;
             }
+            attached.leave_off(left_off);
         }
         self.supervisor.ready("recording");
         self.show_instruments();
-        for record in ring.iter_mut().flat_map(PreTrigger::pour) {
-            let Record::Raw(raw) = record else { continue };
-            let named = |attached: &Attached| attached.is_named(&raw.device);
-            if let Some(device) = self.state.attached.iter().position(named) {
-                self.link_before(device, &raw.link_event());
+        if let Some(mut remembered) = remembered {
+            let [recorded, unrecorded] = remembered.pour();
+            self.repeat(&recorded);
+            self.links_before(&unrecorded);
+        }
+        self.state.attached.iter_mut().for_each(Attached::tell);
+        let recording = self.campaign.recordings.last().map_or("", |last| last.name.as_str());
+        tracing::info!(recording, "session begun");
+        Ok(())
+    }
+
+    /// Takes what is in the recording before, and marks it as such.
+    fn repeat(&mut self, recorded: &[Raw]) {
+        self.keeper.lead(true);
+        for attached in &mut self.state.attached {
+            let first = recorded.iter().find(|raw| attached.is_named(&raw.device));
+            if let Some(first) = first {
+                self.keeper.mark(attached.lead(first.time_s));
             }
         }
-        Ok(())
+        self.links_before(recorded);
+        self.keeper.lead(false);
+        let ends_s = recorded.last().map_or(0.0, |last| last.time_s);
+        for attached in &mut self.state.attached {
+            if let Some(begun) = attached.begin(ends_s) {
+                self.keeper.mark(begun);
+            }
+        }
+    }
+
+    fn links_before(&mut self, raws: &[Raw]) {
+        for raw in raws {
+            let named = |attached: &Attached| attached.is_named(&raw.device);
+            let device = self.state.attached.iter().position(named);
+            if let Some((device, link)) = device.zip(raw.link_event()) {
+                self.link_before(device, &link);
+            }
+        }
     }
 
     fn open_ports(&mut self, events: &Sender<Event>) -> Result<(), LiveError> {
@@ -98,10 +134,10 @@ impl UnderWay<'_> {
             let clock = Arc::clone(self.clock) as Arc<dyn Clock>;
             let events = events.clone();
             let outlet = move |link| events.try_send(Event::Link { device, link }).is_ok();
-            let AttachedInstrument { thread, interpreter, latency_s } =
+            let AttachedInstrument { thread, latency_s, .. } =
                 Instrument::attach(config, clock, Box::new(outlet))?;
             self.state.ports.push(thread);
-            self.state.attached.push(Attached::new(config, interpreter, latency_s));
+            self.state.attached.push(Attached::new(config, latency_s)?);
         }
         Ok(())
     }

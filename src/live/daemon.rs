@@ -66,6 +66,7 @@ pub fn run(
     let mut diagnoser = Diagnoser::start(campaign.clone(), board, sender.clone());
     let mut converting = Converting::default();
     let (mut paused_by, mut awaits_room, mut taken_over) = (None, false, None);
+    let mut left_off = Vec::new();
     loop {
         let plan = Plan {
             text: text.clone(),
@@ -76,6 +77,7 @@ pub fn run(
             paused_by: paused_by.clone(),
             awaits_room,
             taken_over: taken_over.take(),
+            left_off,
         };
         let handle = runtime.handle();
         let lent = Lent {
@@ -87,7 +89,7 @@ pub fn run(
         };
         let left = session::run(plan, lent)?;
         left.closed.map_or(Ok(()), |closed| converting.start(closed))?;
-        (earlier, taken_over) = (left.results, left.handed_over);
+        (earlier, taken_over, left_off) = (left.results, left.handed_over, left.last_heard);
         awaits_room = matches!(left.ended, Ended::BrokenOff);
         match left.ended {
             Ended::Terminated => {

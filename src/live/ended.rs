@@ -1,5 +1,9 @@
 //! Why a recording ended, and what is left of its session.
 
+use std::sync::Arc;
+
+use devices::Quantity;
+use devices::setup::DeviceConfig;
 use tokio::sync::mpsc::Receiver;
 
 use super::attaching::Before;
@@ -38,9 +42,13 @@ impl Ended {
         }
     }
 
-    /// Whether the next session takes the open links over: there was no recording that ended.
+    /// Whether the next session takes the open links over; other instruments are attached anew.
     pub(super) fn hands_over(&self) -> bool {
-        matches!(self, Self::Resumed | Self::RoomAgain)
+        match self {
+            Self::Terminated => false,
+            Self::Reloaded(reload) => reload.keeps_links,
+            _ => true,
+        }
     }
 }
 
@@ -50,6 +58,16 @@ pub(super) struct Over {
     pub(super) keeper: Keeper,
     /// Links for the next session, and where their events wait.
     pub(super) links: Option<(Before, Receiver<Event>)>,
+    /// Where links that are handed over to nobody were left.
+    pub(super) left_off: Vec<LeftOff>,
+}
+
+/// The last sample of a channel before its port was closed.
+pub(super) struct LeftOff {
+    /// Name of the device.
+    pub(super) device: Arc<str>,
+    pub(super) quantity: Quantity,
+    pub(super) time_s: f64,
 }
 
 /// A campaign file that was read again.
@@ -57,4 +75,13 @@ pub(super) struct Reload {
     pub(super) campaign: Campaign,
     /// Its text, as it was when it was read.
     pub(super) text: String,
+    /// Whether its instruments are those before, on the same ports; their channels and
+    /// calibrations may be others.
+    pub(super) keeps_links: bool,
+}
+
+/// Whether conversations with instruments before go on with those after.
+pub(super) fn keeps_links(before: &[DeviceConfig], after: &[DeviceConfig]) -> bool {
+    let link = |device: &DeviceConfig| DeviceConfig { channels: Vec::new(), ..device.clone() };
+    before.iter().map(link).eq(after.iter().map(link))
 }

@@ -6,31 +6,31 @@ use std::time::Duration;
 
 use devices::clock::WallClock;
 use replay::{
-    ClosedRecording, Disk, Exit, LIVE_SOURCE, LocalDisk, PreTrigger, Progress, Provenance, Raw,
+    ClosedRecording, Disk, Exit, ExitStatus, LIVE_SOURCE, LocalDisk, Progress, Provenance, Raw,
     Record, Recorder, ReplayError, Settings,
 };
 
 use super::error::LiveError;
+use super::remembered::Remembered;
 use crate::campaign::LIVE_FOLDER;
 use crate::page::stamp;
 
 /// Free space [bytes] at which recording begins again; with less it would soon stop again.
 const ROOM_BYTES: u64 = 2 * Settings::LIVE.reserve_bytes;
 
-/// Of what is not recorded, so much is remembered [s] and begins the next recording: whoever lets
-/// the model go and then sees that nothing is recorded has the run.
-const REMEMBERED_S: f64 = 30.0;
-/// Memory that it may take [bytes]: four times what four channels at 2 kHz need.
-const REMEMBERED_BYTES: usize = 32 << 20;
-
-/// Takes the records of a session; of one that is not recorded it remembers the last seconds of the
-/// links.
+/// Takes the records of a session, and remembers the last seconds of the links for the next.
 pub(super) struct Keeper {
     recorder: Option<Recorder>,
     /// Where recordings go; none where somebody does not want any.
     folder: Option<PathBuf>,
     n_refused: u64,
-    ring: PreTrigger,
+    /// Whether it was stopped by something else than the want of room.
+    has_failed: bool,
+    remembered: Remembered,
+    /// Whether what comes on the links is in the recording before.
+    leads: bool,
+    /// Whether what comes on the links is for the next recording.
+    is_cut: bool,
 }
 
 /// Name of a recording that begins now, relative to the campaign's folder:
@@ -74,8 +74,16 @@ impl Keeper {
 
     /// Of a session that somebody does not want recorded.
     pub(super) fn idle() -> Self {
-        let ring = PreTrigger::new(REMEMBERED_S, REMEMBERED_BYTES);
-        Self { recorder: None, folder: None, n_refused: 0, ring }
+        let remembered = Remembered::new();
+        Self {
+            recorder: None,
+            folder: None,
+            n_refused: 0,
+            has_failed: false,
+            remembered,
+            leads: false,
+            is_cut: false,
+        }
     }
 
     /// Of a session that waits for the disk to have room.
@@ -106,26 +114,46 @@ impl Keeper {
 
     /// Takes a record; a disk that fails is told once and stops nothing else.
     pub(super) fn push(&mut self, record: Record) {
-        match (&mut self.recorder, record) {
-            (Some(recorder), record) => {
-                let pushed = recorder.push(record);
-                self.told(pushed);
+        let is_of_link = match &record {
+            Record::Raw(raw) => {
+                self.remember(raw.clone());
+                true
             }
-            (None, Record::Raw(raw)) => self.ring.push(Record::Raw(raw)),
-            (None, _) => {}
+            Record::Sample(_) | Record::Gap(_) | Record::Loss(_) | Record::Quality(_) => true,
+            _ => false,
+        };
+        if !(is_of_link && self.is_cut) {
+            self.mark(record);
         }
     }
 
-    /// Remembers what a recording need not hold unless it begins there.
-    pub(super) fn remember(&mut self, raw: Option<Raw>) {
-        if let Some(raw) = raw.filter(|_| self.recorder.is_none()) {
-            self.ring.push(Record::Raw(raw));
+    /// Takes a record that the next recording has no use for.
+    pub(super) fn mark(&mut self, record: Record) {
+        if let Some(recorder) = &mut self.recorder {
+            let pushed = recorder.push(record);
+            self.told(pushed);
         }
     }
 
-    /// What was remembered.
-    pub(super) fn take_ring(&mut self) -> PreTrigger {
-        std::mem::replace(&mut self.ring, Self::idle().ring)
+    /// Remembers what happened on a link; a recording may begin there.
+    pub(super) fn remember(&mut self, raw: Raw) {
+        let is_recorded = self.leads || self.records() && !self.is_cut;
+        self.remembered.push(raw, is_recorded);
+    }
+
+    /// Whether what comes on the links from here on is in the recording before.
+    pub(super) fn lead(&mut self, leads: bool) {
+        self.leads = leads;
+    }
+
+    /// What comes on the links from here on is for the next recording.
+    pub(super) fn cut(&mut self) {
+        self.is_cut = true;
+    }
+
+    /// What was remembered, for the next session.
+    pub(super) fn take_remembered(&mut self) -> Remembered {
+        std::mem::replace(&mut self.remembered, Remembered::new())
     }
 
     /// Does what is due at a time of the world.
@@ -143,6 +171,7 @@ impl Keeper {
                 | ReplayError::TimeBackwards { .. }
         );
         self.n_refused += u64::from(is_record);
+        self.has_failed |= !is_record && !error.is_for_want_of_room();
         // A broken instrument may bring a thousand such numbers a second.
         if !is_record || self.n_refused.is_power_of_two() {
             let (n_refused, hint) = (self.n_refused, error.hint().unwrap_or_default());
@@ -158,8 +187,13 @@ impl Keeper {
 
     /// Ends the recording; [`ClosedRecording::convert`] gives it its name.
     pub(super) fn close(self, reason: &str) -> Result<Option<ClosedRecording>, LiveError> {
+        let status = match self.broke_off() {
+            true if self.has_failed => ExitStatus::Fail,
+            true => ExitStatus::Abort,
+            false => ExitStatus::Success,
+        };
         let Some(recorder) = self.recorder else { return Ok(None) };
-        Ok(Some(recorder.close(Exit::success(reason))?))
+        Ok(Some(recorder.close(Exit { status, reason: reason.to_owned() })?))
     }
 }
 

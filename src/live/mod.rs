@@ -9,14 +9,16 @@
 //!                           \---> board -> page
 //! ```
 //!
-//! A session is one recording: its instruments are attached when it begins and detached when it
-//! ends, so that its raw bytes alone give its samples again. While nothing is recorded, by hand or
-//! for want of room, a session remembers the last seconds of its links; the recording that follows
-//! takes over links and seconds, and begins with them (attaching). The daemon runs one session
-//! after the other; every queue between threads is bounded, and what finds no place is counted.
+//! A session is one recording, or a time without one. The next takes over its open links and the
+//! last seconds that they brought (remembered), and begins with them (attaching): those that are
+//! recorded already bring decoders and clocks to where they were, the others are its own, so that
+//! no byte is lost between two recordings and the raw bytes of each alone give its samples again.
+//! Only other instruments are attached anew. The daemon runs one session after the other; every
+//! queue between threads is bounded, and what finds no place is counted.
 
 mod attached;
 mod attaching;
+mod channel;
 mod daemon;
 mod diagnosing;
 mod ended;
@@ -24,9 +26,12 @@ mod error;
 mod event;
 mod keeping;
 mod provisional;
+mod remembered;
 mod reporting;
 mod session;
 mod showing;
+#[cfg(test)]
+mod stalled;
 mod supervisor;
 mod telling;
 mod under_way;

@@ -12,7 +12,7 @@ use tokio::sync::mpsc;
 
 use super::attaching::TakenOver;
 use super::diagnosing::Diagnoser;
-use super::ended::{Ended, Over};
+use super::ended::{Ended, LeftOff, Over};
 use super::error::LiveError;
 use super::keeping::{Keeper, fresh_name};
 use super::provisional;
@@ -44,6 +44,8 @@ pub(super) struct Plan {
     pub(super) awaits_room: bool,
     /// What the session before hands over.
     pub(super) taken_over: Option<TakenOver>,
+    /// Where it left links that it does not hand over.
+    pub(super) left_off: Vec<LeftOff>,
 }
 
 /// What a session leaves.
@@ -57,6 +59,8 @@ pub(super) struct Left {
     pub(super) recordings: Vec<Recording>,
     /// What the next one takes over.
     pub(super) handed_over: Option<TakenOver>,
+    /// Where links that it does not take over were left.
+    pub(super) last_heard: Vec<LeftOff>,
 }
 
 /// What the daemon lends to every session.
@@ -79,6 +83,7 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
         paused_by,
         awaits_room,
         taken_over,
+        left_off,
     } = plan;
     let Lent { runtime, clock, orders, board, supervisor } = lent;
     // Whoever takes a judgement back gets the run again, so that none is laid over these.
@@ -128,7 +133,7 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
             knows_earlier,
             state: State::default(),
         };
-        let attached = under_way.attach(&sender, text, links);
+        let attached = under_way.attach(&sender, text, links, &left_off);
         let reporter = Reporter {
             campaign,
             results,
@@ -151,13 +156,13 @@ pub(super) fn run(plan: Plan, lent: Lent<'_>) -> Result<Left, LiveError> {
         };
         (recorded, reporter.join())
     });
-    let Over { ended, keeper, links } = recorded?;
+    let Over { ended, keeper, links, left_off } = recorded?;
     let closed = keeper.close(ended.reason())?;
     let results = results.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
     let recorded = if closed.is_some() { campaign } else { before };
     let recordings = recorded.recordings.clone();
     let handed_over = links.map(|links| TakenOver::new(links, next_sender));
-    Ok(Left { ended, closed, results, recordings, handed_over })
+    Ok(Left { ended, closed, results, recordings, handed_over, last_heard: left_off })
 }
 
 /// Puts the recording that begins now last in the campaign; its path. One that is not recorded has

@@ -7,23 +7,111 @@ use super::provisional::Told;
 use super::reporting::{Identified, Reported};
 use super::under_way::UnderWay;
 use crate::page::status::ToldBefore;
-use crate::pipeline::{Found, FoundRun};
+use crate::pipeline::{Found, FoundRun, RunSoFar};
 use crate::report::IDENTIFICATION_NAME;
-use crate::run::RunKind;
+use crate::run::{RunEnd, RunKind};
 
 /// Two ends so near to each other are one [s].
 const SAME_INSTANT_S: f64 = 1e-3;
 
+/// A run that began, and may go on or turn out to be none.
+#[derive(Debug, Clone)]
+pub(super) struct Begun {
+    /// Its name in the recording.
+    name: String,
+    kind: RunKind,
+    start_s: f64,
+    end_s: f64,
+    counts: Vec<ChannelCounts>,
+}
+
+/// A run whose end is known.
+#[derive(Debug)]
+pub(super) struct Decided {
+    /// Its name in the recording.
+    name: String,
+    /// When the sample came by which it was known [ns].
+    at_ns: u64,
+}
+
+impl Begun {
+    /// The run under way.
+    pub(super) fn of(run: &RunSoFar) -> Self {
+        let (name, counts) = (String::new(), run.brought().iter().map(ChannelCounts::of).collect());
+        Self { name, kind: run.kind(), start_s: run.start_s(), end_s: run.end_s(), counts }
+    }
+
+    fn of_found(found: &FoundRun) -> Self {
+        let FoundRun { kind, start_s, end_s, ref brought, .. } = *found;
+        let counts = brought.iter().map(ChannelCounts::of).collect();
+        Self { name: String::new(), kind, start_s, end_s, counts }
+    }
+
+    fn has_part_in(&self, start_s: f64, end_s: f64) -> bool {
+        self.start_s < end_s && start_s < self.end_s
+    }
+
+    fn stop(self, time_s: f64, exit_status: ExitStatus, reason: &str) -> Record {
+        let Self { name: run, start_s, end_s, counts, .. } = self;
+        let reason = reason.to_owned();
+        Record::RunStop(RunStop { time_s, run, start_s, end_s, exit_status, reason, counts })
+    }
+}
+
 impl UnderWay<'_> {
+    /// Takes the run that is under way now, or that there is none.
+    pub(super) fn take_so_far(&mut self, now: Option<Begun>) {
+        match (now, self.state.begun.take()) {
+            (Some(now), Some(before)) => {
+                self.state.begun = Some(Begun { end_s: now.end_s, counts: now.counts, ..before });
+            }
+            (Some(now), None) => self.state.begun = Some(self.begin(now)),
+            (None, Some(before)) => self.stop(before, ExitStatus::Fail, "it became no run"),
+            (None, None) => {}
+        }
+    }
+
+    /// The recording has ended: so has a run that nobody found the end of.
+    pub(super) fn break_off(&mut self) {
+        if let Some(begun) = self.state.begun.take() {
+            self.stop(begun, ExitStatus::Abort, "the recording ended");
+        }
+    }
+
+    fn begin(&mut self, begun: Begun) -> Begun {
+        self.state.n_begun += 1;
+        let begun = Begun { name: format!("run-{}", self.state.n_begun), ..begun };
+        let kind = match begun.kind {
+            RunKind::Decay => "decay",
+            RunKind::Forced => "forced",
+        };
+        self.keeper.push(Record::RunStart(RunStart {
+            time_s: self.now_s(),
+            run: begun.name.clone(),
+            kind: kind.to_owned(),
+            condition: self.campaign.live.condition.clone(),
+            start_s: begun.start_s,
+        }));
+        begun
+    }
+
+    fn stop(&mut self, begun: Begun, exit_status: ExitStatus, reason: &str) {
+        self.keeper.push(begun.stop(self.now_s(), exit_status, reason));
+    }
+
+    fn now_s(&self) -> f64 {
+        self.clock.now_ns() as f64 / 1e9
+    }
+
     /// Tells what the run finder has found by the sample that came then.
     pub(super) fn take_found(&mut self, at_ns: u64) {
         let time_s = self.clock.now_ns() as f64 / 1e9;
         for found in std::mem::take(&mut self.state.found) {
             match found {
                 Found::Run(run) => {
-                    self.state.decided_ns.insert(run.number, at_ns);
                     self.offers.ended(run.number);
-                    self.found_run(&run, time_s);
+                    let name = self.found_run(&run);
+                    self.state.decided.insert(run.number, Decided { name, at_ns });
                     self.board.change(|status| {
                         status.runs.n_found += 1;
                         status.motion.run_ended_s = Some(run.end_s);
@@ -32,6 +120,10 @@ impl UnderWay<'_> {
                 Found::Rejected(rejection) => {
                     let crate::run::Rejection { start_s, end_s, reason } = rejection;
                     tracing::info!(start_s, end_s, "not used: {reason}");
+                    let of_it = |begun: &mut Begun| begun.has_part_in(start_s, end_s);
+                    if let Some(begun) = self.state.begun.take_if(of_it) {
+                        self.stop(begun, ExitStatus::Fail, &reason);
+                    }
                     self.keeper.push(Record::Rejection(Rejection {
                         time_s,
                         start_s,
@@ -44,33 +136,36 @@ impl UnderWay<'_> {
         }
     }
 
-    fn found_run(&mut self, found: &FoundRun, time_s: f64) {
-        let FoundRun { start_s, end_s, end, ref brought, .. } = *found;
-        let run = name_of(found);
-        let kind = match found.kind {
-            RunKind::Decay => "decay",
-            RunKind::Forced => "forced",
+    /// The name of a run that was found; one that nobody saw begin begins with its end.
+    fn found_run(&mut self, found: &FoundRun) -> String {
+        let FoundRun { start_s, end_s, .. } = *found;
+        let begun = match self.state.begun.take() {
+            Some(begun) if begun.has_part_in(start_s, end_s) => begun,
+            other => {
+                if let Some(other) = other {
+                    self.stop(other, ExitStatus::Fail, "it became no run");
+                }
+                self.begin(Begun::of_found(found))
+            }
         };
-        tracing::info!(run, kind, start_s, end_s, "run found");
-        let condition = self.campaign.live.condition.clone();
-        self.keeper.push(Record::RunStart(RunStart {
-            time_s,
-            run: run.clone(),
-            kind: kind.to_owned(),
-            condition,
-            start_s,
-        }));
-        let counts = brought.iter().map(ChannelCounts::of).collect();
-        let reason = end.clause().to_owned();
-        let exit_status = ExitStatus::Success;
-        let stop = RunStop { time_s, run, start_s, end_s, exit_status, reason, counts };
-        self.keeper.push(Record::RunStop(stop));
+        let run = &begun.name;
+        tracing::info!(run, kind = ?found.kind, start_s, end_s, "run found");
+        begun.name
     }
 
     pub(super) fn reported(&mut self, reported: Reported) {
         let Reported { found, outcome, at_ns, told } = reported;
         let time_s = self.clock.now_ns() as f64 / 1e9;
-        let decided_ns = self.state.decided_ns.remove(&found.number).unwrap_or(at_ns);
+        let Some(Decided { name, at_ns: decided_ns }) = self.state.decided.remove(&found.number)
+        else {
+            return;
+        };
+        let stopped = Begun { name: name.clone(), ..Begun::of_found(&found) };
+        let (exit_status, reason) = match &outcome {
+            Ok(_) => (exit_status(found.end), found.end.clause()),
+            Err(reason) => (ExitStatus::Fail, reason.as_str()),
+        };
+        self.stop(stopped, exit_status, reason);
         match outcome {
             Ok(identified) => {
                 let latency = self.clock.real(at_ns.saturating_sub(decided_ns));
@@ -84,7 +179,7 @@ impl UnderWay<'_> {
                 tracing::info!(run, latency_s, known_after_s, first_after_s, "{summary}");
                 self.keeper.push(Record::Result(RunResult {
                     time_s,
-                    run: name_of(&found),
+                    run: name,
                     schema: IDENTIFICATION_NAME.to_owned(),
                     document: identified.document,
                 }));
@@ -130,7 +225,14 @@ impl UnderWay<'_> {
     }
 }
 
-/// Name of a run in its recording; results number only those that say something.
-fn name_of(found: &FoundRun) -> String {
-    format!("found-{}", found.number)
+/// How a run ended whose report is there.
+fn exit_status(end: RunEnd) -> ExitStatus {
+    match end {
+        RunEnd::Gap | RunEnd::RecordingEnded | RunEnd::TooLong => ExitStatus::Abort,
+        RunEnd::LostInNoise
+        | RunEnd::Caught
+        | RunEnd::PassEnded
+        | RunEnd::ReStruck
+        | RunEnd::ExcitationChanged => ExitStatus::Success,
+    }
 }

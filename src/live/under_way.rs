@@ -13,12 +13,13 @@ use replay::{LinkLosses, Note};
 use tokio::sync::mpsc::Receiver;
 
 use super::attached::{Attached, Taken};
-use super::ended::{Ended, Over, Reload};
+use super::ended::{Ended, Over, Reload, keeps_links};
 use super::error::no_devices;
 use super::event::Event;
 use super::keeping::Keeper;
 use super::provisional::Offers;
 use super::supervisor::Supervisor;
+use super::telling::{Begun, Decided};
 use crate::campaign::{self, Campaign, FILE_NAME};
 use crate::page::status::RecordedStatus;
 use crate::page::{Board, Order};
@@ -75,8 +76,11 @@ pub(super) struct State {
     pub(super) losses: LinkLosses,
     pub(super) found: Vec<Found>,
     pub(super) taken: Taken,
-    /// When the sample came by which each run was known to have ended [ns].
-    pub(super) decided_ns: BTreeMap<u64, u64>,
+    /// The run that is under way, as it was when it was last looked at.
+    pub(super) begun: Option<Begun>,
+    pub(super) n_begun: u64,
+    /// Runs that have ended and are still to be reported.
+    pub(super) decided: BTreeMap<u64, Decided>,
     pub(super) began_ns: u64,
     /// When the model last moved, and when a sample of its roll last came [ns].
     pub(super) moved_ns: u64,
@@ -101,7 +105,8 @@ impl UnderWay<'_> {
         loop {
             let event = tokio::select! {
                 Some(event) = events.recv() => event,
-                Some(order) = orders.recv() => Event::Order(order),
+                // Once the links are the next session's, whatever anybody wants is too.
+                Some(order) = orders.recv(), if !self.hands_over() => Event::Order(order),
                 _ = ticks.tick() => Event::Tick,
             };
             self.state.n_events += 1;
@@ -123,22 +128,30 @@ impl UnderWay<'_> {
                 Event::Tick => self.tick(),
             }
             // The ports were closed when the end began, so that nothing comes behind these.
-            // Links that are handed over never fall silent, and nothing of theirs is waited for.
-            let ended = self.state.ended.as_ref();
-            if ended.is_some_and(|ended| ended.hands_over() || events.is_empty()) {
+            // Links that are handed over never fall silent; what they bring is the next session's.
+            if self.hands_over() || self.state.ended.is_some() && events.is_empty() {
                 self.end_runs();
             }
             if self.state.all_reported
                 && let Some(ended) = self.state.ended.take()
             {
                 self.renew_status();
-                let links = ended.hands_over().then(|| {
-                    let State { attached, ports, .. } = self.state;
-                    ((attached, ports, self.keeper.take_ring()), events)
-                });
-                return Over { ended, keeper: self.keeper, links };
+                let State { attached, ports, .. } = self.state;
+                let remembered = self.keeper.take_remembered();
+                let (mut links, mut left_off) = (None, Vec::new());
+                if ended.hands_over() {
+                    links = Some(((attached, ports, remembered), events));
+                } else {
+                    left_off = attached.iter().flat_map(Attached::left_off).collect();
+                }
+                return Over { ended, keeper: self.keeper, links, left_off };
             }
         }
+    }
+
+    /// Whether the links are the next session's already.
+    fn hands_over(&self) -> bool {
+        self.state.ended.as_ref().is_some_and(Ended::hands_over)
     }
 
     fn link(&mut self, device: usize, link: &LinkEvent) {
@@ -162,7 +175,7 @@ impl UnderWay<'_> {
         if let Some(attached) = self.state.attached.get_mut(device) {
             attached.take(link, now_ns as f64 / 1e9, &mut self.state.losses, &mut taken);
         }
-        self.keeper.remember(taken.joint.take());
+        taken.joint.take().into_iter().for_each(|joint| self.keeper.remember(joint));
         taken.records.drain(..).for_each(|record| self.keeper.push(record));
         taken
     }
@@ -217,12 +230,20 @@ impl UnderWay<'_> {
     /// Offers the run under way by the newest sample of its roll.
     fn offer(&mut self, samples: &[Sample], at_ns: u64) {
         let rolls = samples.iter().rev().find(|sample| sample.quantity == Quantity::Roll);
-        if let (Some(runs), Some(roll)) = (&self.runs, rolls) {
-            self.offers.offer(roll.time_s, at_ns, || runs.so_far());
+        let (Some(runs), Some(roll)) = (&self.runs, rolls) else { return };
+        let mut seen = None;
+        self.offers.offer(roll.time_s, at_ns, || {
+            let so_far = runs.so_far();
+            seen = Some(so_far.as_ref().map(Begun::of));
+            so_far
+        });
+        if let Some(begun) = seen {
+            self.take_so_far(begun);
         }
     }
 
-    /// Closes the ports, unless they are; the rest follows when their last events were taken.
+    /// Hands the links over, or closes the ports, unless they are; the rest follows when their last
+    /// events were taken.
     fn end(&mut self, ended: Ended) {
         if matches!(ended, Ended::Terminated) {
             self.supervisor.stopping();
@@ -231,8 +252,8 @@ impl UnderWay<'_> {
             self.state.ended = Some(ended);
         }
         self.is_ending.store(true, Ordering::Release);
-        if self.state.ended.as_ref().is_some_and(Ended::hands_over) {
-            return;
+        if self.hands_over() {
+            return self.keeper.cut();
         }
         self.state.ports.iter().for_each(LinkThread::stop);
         self.state.ports.clear();
@@ -248,6 +269,7 @@ impl UnderWay<'_> {
         self.read_clocks();
         runs.end(notes, &mut self.state.found);
         self.take_found(self.clock.now_ns());
+        self.break_off();
     }
 
     /// Reads the campaign file again; a wrong one changes nothing.
@@ -262,7 +284,8 @@ impl UnderWay<'_> {
         match read {
             Ok(campaign) => {
                 tracing::info!("the new campaign file is in force from the next rest on");
-                self.state.reload = Some(Box::new(Reload { campaign, text }));
+                let keeps_links = keeps_links(&self.campaign.live.devices, &campaign.live.devices);
+                self.state.reload = Some(Box::new(Reload { campaign, text, keeps_links }));
                 self.board.change(|status| {
                     status.reload_waits = true;
                     status.refused_reload = None;

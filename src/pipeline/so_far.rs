@@ -7,7 +7,7 @@ use super::workers::Identified;
 use crate::campaign::Campaign;
 use crate::inverse::{self, Setting};
 use crate::results::{IdentifiedRun, Overview};
-use crate::run::Run;
+use crate::run::{Run, RunKind};
 
 /// A run that may go on.
 pub struct RunSoFar {
@@ -21,6 +21,21 @@ pub struct RunSoFar {
 }
 
 impl RunSoFar {
+    /// Decay or forced.
+    pub fn kind(&self) -> RunKind {
+        self.run.kind
+    }
+
+    /// First instant that it holds [s].
+    pub fn start_s(&self) -> f64 {
+        self.run.start_s
+    }
+
+    /// What the instruments brought in it, channel by channel.
+    pub fn brought(&self) -> &[Brought] {
+        &self.brought
+    }
+
     /// Last instant that it holds [s].
     pub fn end_s(&self) -> f64 {
         self.run.end_s

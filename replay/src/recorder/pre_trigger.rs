@@ -29,6 +29,11 @@ impl PreTrigger {
         Self { span_s, bytes_max, ring, bytes: 0, standing, crowded_out: 0 }
     }
 
+    /// Spans another time [s] from now on.
+    pub fn span(&mut self, span_s: f64) {
+        self.span_s = span_s;
+    }
+
     /// Remembers a record and forgets what has become too old.
     pub fn push(&mut self, record: impl Into<Record>) {
         let record = record.into();
