@@ -1,7 +1,8 @@
 //! The grown model looked back on: effects that are not missed leave, others may take their place.
 
 use super::alike::{SAME, contains, is_approximate, is_form_of, is_same};
-use super::growth::{ENTERS, Entered, leftovers, sure_excess};
+use super::entry::is_crumb_of;
+use super::growth::{ENTERS, Entered, excess, leftovers, sure_excess};
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score};
 use super::settle::{Settled, settle};
@@ -29,7 +30,18 @@ pub(super) fn check_backward(
         let taken = less.extensions.remove(e);
         let without = settle(survey, less, noise);
         let missed = current.log_evidence - without.log_evidence;
-        if missed < ENTERS {
+        // What came before an approximate effect may have taken up a part of it.
+        let removed = || {
+            let left = [&without, &current].map(|of| excess(&leftovers(survey, &of.fit)));
+            left[0] - left[1]
+        };
+        let is_crumb = entered[e + 1..].iter().any(|later| is_approximate(later.id)) && {
+            let looked =
+                Entered { log_bayes_factor: missed, removed: removed(), ..entered[e].clone() };
+            let scope = Some(taken.effect.scope);
+            entered[e + 1..].iter().any(|later| is_crumb_of(later, &looked, scope))
+        };
+        if missed < ENTERS || is_crumb {
             current = without;
             entered.remove(e);
             continue;

@@ -65,7 +65,8 @@ pub(super) fn best(
         .collect();
     let entered = Entered { id: best.id, log_bayes_factor, removed, found, equivalent_to };
     let settled = tried.swap_remove(0).settled;
-    if known.iter().any(|known| is_crumb_of(known, &entered, &settled)) {
+    let scope = settled.fit.extensions.last().map(|newest| newest.effect.scope);
+    if known.iter().any(|known| is_crumb_of(known, &entered, scope)) {
         Best::IsCrumb(settled, entered)
     } else {
         Best::Enters(settled, entered)
@@ -87,11 +88,8 @@ fn prefer_the_part(survey: &Survey, tried: &mut [Tried]) {
 /// Whether an effect is what the form of a known one leaves. What makes the runs agree better
 /// takes nothing from what each of them leaves, and is no crumb of that, unless it is that a run
 /// is none of the others'.
-fn is_crumb_of(known: &Entered, newest: &Entered, settled: &Settled) -> bool {
-    // What only few runs may have takes up little of anything.
-    let newest_is =
-        |scope| settled.fit.extensions.last().is_some_and(|newest| newest.effect.scope == scope);
-    let is_of_each_run = newest_is(Scope::Run);
+pub(super) fn is_crumb_of(known: &Entered, newest: &Entered, scope: Option<Scope>) -> bool {
+    let is_of_each_run = scope == Some(Scope::Run);
     let is_little = newest.log_bayes_factor < CRUMB_OF_EVIDENCE * known.log_bayes_factor;
     let is_small = newest.log_bayes_factor < CRUMB * known.log_bayes_factor;
     let share = if is_of_each_run { CRUMB_OF_EACH_RUN } else { CRUMB };
@@ -99,7 +97,8 @@ fn is_crumb_of(known: &Entered, newest: &Entered, settled: &Settled) -> bool {
         && (is_of_leftover(newest.removed, newest.log_bayes_factor)
             || is_of_one_layer(known, newest))
         && (newest.removed < share * known.removed && (is_of_each_run || is_small) || is_little);
-    let is_odd_of_form = newest_is(Scope::OddRun) && is_approximate(known.id);
+    // What only few runs may have takes up little of anything.
+    let is_odd_of_form = scope == Some(Scope::OddRun) && is_approximate(known.id);
     is_of_form || ((is_of_each_run || is_odd_of_form) && is_little)
 }
 

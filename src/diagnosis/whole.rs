@@ -3,11 +3,14 @@
 use std::cell::OnceCell;
 use std::sync::Arc;
 
-use super::growth::{Grown, Stem, grow};
+use super::alike::{SAME, is_approximate};
+use super::entry::CRUMB_OF_EVIDENCE;
+use super::growth::{Entered, Grown, Stem, grow};
 use super::observation::Observation;
 use super::reversed::Reversed;
+use super::settle::settle;
 use super::shaking;
-use super::survey::{Spent, Survey};
+use super::survey::{Fit, Spent, Survey};
 use super::verdict::{Diagnosis, Verdict, told};
 use crate::campaign::Tank;
 use crate::run::RunKind;
@@ -58,11 +61,36 @@ pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
     }
     let explained =
         if whole.is_empty() { None } else { explained(whole, &survey, &grown, &of_one_kind, tell) };
-    // What names more of what the runs alone show is better than what explains what came after.
-    let names_more = |whole: &Diagnosis| {
-        together.verdict == Verdict::Unexplained || whole.causes.len() >= together.causes.len()
+    // What names more of what the runs alone show is better than what explains what came after,
+    // unless that does as well for the runs.
+    let names_enough = |whole: &Whole| {
+        together.verdict == Verdict::Unexplained
+            || whole.diagnosis.causes.len() >= together.causes.len()
+            || whole.does_as_well(&survey, &grown)
     };
-    Some(explained.filter(names_more).unwrap_or(together))
+    Some(explained.filter(names_enough).map_or(together, |whole| whole.diagnosis))
+}
+
+/// What explains the runs with what the model did after its decays.
+struct Whole {
+    diagnosis: Diagnosis,
+    entered: Vec<Entered>,
+    /// Its model as it stands in the runs alone.
+    of_runs: Option<Fit>,
+}
+
+impl Whole {
+    /// Whether it is as probable under the runs alone as what grew on them, but for what may be a
+    /// want of an approximate form.
+    fn does_as_well(&self, survey: &Survey, grown: &Grown) -> bool {
+        let Some(of_runs) = &self.of_runs else { return false };
+        let log = |fit: &Fit| settle(survey, fit.clone(), &grown.noise).log_evidence;
+        let behind = log(&grown.last.fit) - log(of_runs);
+        let forms = self.entered.iter().filter(|one| is_approximate(one.id));
+        let want = forms.map(|one| CRUMB_OF_EVIDENCE * one.log_bayes_factor).fold(SAME, f64::max);
+        tracing::debug!(behind, want, "what explains what came after, under the runs alone");
+        behind < want
+    }
 }
 
 /// Share of what one diagnosis leaves that a better one may; by judgement.
@@ -87,14 +115,17 @@ fn explained(
     grown: &Grown,
     of_one_kind: &Parts,
     tell: &dyn Fn(&Survey, &Grown) -> Diagnosis,
-) -> Option<Diagnosis> {
+) -> Option<Whole> {
     let short = whole.iter().map(|run| run.clone().first_periods(FIRST_PERIODS));
     let spent = &survey.spent;
     let short = Survey::new(short.collect(), spent);
     let whole = Survey::new(whole, spent);
     let told_from = |stem| {
-        let diagnosis = tell(&whole, &grow(&whole, stem));
-        (diagnosis.verdict != Verdict::Unexplained).then_some(diagnosis)
+        let grown = grow(&whole, stem);
+        let diagnosis = tell(&whole, &grown);
+        let of_runs = survey.adopted(&whole, &grown.last.fit);
+        let is_explained = diagnosis.verdict != Verdict::Unexplained;
+        is_explained.then_some(Whole { diagnosis, entered: grown.entered, of_runs })
     };
     let first = || stem(&whole, survey, grown).and_then(|stem| told_from(Some(stem)));
     let of_short = || stem(&whole, &short, &grow(&short, None));
@@ -102,14 +133,14 @@ fn explained(
     let third = || of_one_kind.stems(&whole).find_map(|stem| told_from(Some(stem)));
     let fourth = || told_from(None);
     // One that explains all is looked for no further; of others the one that leaves least counts.
-    let ways: [&dyn Fn() -> Option<Diagnosis>; 4] = [&first, &second, &third, &fourth];
-    let mut best: Option<Diagnosis> = None;
+    let ways: [&dyn Fn() -> Option<Whole>; 4] = [&first, &second, &third, &fourth];
+    let mut best: Option<Whole> = None;
     for way in ways {
-        if best.as_ref().is_some_and(|best| left(best) <= 0.0 || whole.is_spent()) {
+        if best.as_ref().is_some_and(|best| left(&best.diagnosis) <= 0.0 || whole.is_spent()) {
             break;
         }
         let Some(other) = way() else { continue };
-        if best.as_ref().is_none_or(|best| left(&other) < LESS * left(best)) {
+        if best.as_ref().is_none_or(|best| left(&other.diagnosis) < LESS * left(&best.diagnosis)) {
             best = Some(other);
         }
     }
