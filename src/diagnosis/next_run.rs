@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::added::Added;
-use super::alike::narrowing_wanted;
+use super::alike::{narrowing_wanted, open_shapes};
 use super::cores;
 use super::foretold::{Rival, expected_log_bayes_factor, grown_survey, with_run};
 use super::growth::Grown;
@@ -43,6 +43,8 @@ pub struct NextRun {
     pub parts: Vec<&'static str>,
     /// Expected logarithm of the Bayes factor between them, or of the law's volume.
     pub expected_log_bayes_factor: f64,
+    /// Whether the runs are expected to decide what is undecided.
+    pub decides: bool,
     /// Why, in words.
     pub why: String,
 }
@@ -112,6 +114,7 @@ pub(super) fn next_run(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<Ne
             with: None,
             parts,
             expected_log_bayes_factor: 0.0,
+            decides: true,
             why: "no roll test parts a heel of the model from a zero of its channel; an \
                   inclinometer read with the model at rest does"
                 .to_owned(),
@@ -170,15 +173,21 @@ fn parting(
     {
         (log, set) = (both, couple);
     }
+    let mut decides = log >= enough;
+    if narrowing.is_none() {
+        // Any of the class may be the cause.
+        log = log.min(among(survey, &rivals_so_far, &set, noise));
+        decides = log >= DECIDES;
+    }
     let w = grown.last.fit.laws[survey.condition_of[0]].numbers[0];
     let what = set.iter().map(|(plan, _)| plan.words(w)).collect::<Vec<_>>().join(" with ");
     let names = rivals.join(", ");
+    let doubt = if decides { "" } else { ", which may not decide" };
     let why = if narrowing.is_some() {
         let tell = if set.len() > 1 { "tell" } else { "tells" };
-        format!("{what} {tell} the shape of {names} best, and whether it is {favourite}")
+        format!("{what} {tell} the shape of {names} best, and whether it is {favourite}{doubt}")
     } else {
         let part = if set.len() > 1 { "part" } else { "parts" };
-        let doubt = if log < DECIDES { ", which may not decide" } else { "" };
         format!(
             "{what} {part} {favourite} from {names} by an expected log Bayes factor of \
              {log:.0}{doubt}"
@@ -190,8 +199,34 @@ fn parting(
         with: runs.next(),
         parts: std::iter::once(favourite).chain(rivals.iter().copied()).collect(),
         expected_log_bayes_factor: if narrowing.is_some() { 0.0 } else { log },
+        decides,
         why,
     })
+}
+
+/// The least that runs are expected to say between two rivals of a favourite, were one of them the
+/// cause; infinite where there is one rival, or nothing but a shape parts them.
+fn among(
+    survey: &Survey,
+    rivals: &[Rival],
+    set: &[(Plan, f64)],
+    noise: [Option<(f64, f64)>; 2],
+) -> f64 {
+    let id = |rival: &Rival| rival.settled.fit.extensions.last().map(|e| e.effect.id);
+    let is_open = |one: &Rival, id| open_shapes(survey, &one.settled.fit, id).is_some();
+    let pairs = rivals.iter().enumerate().flat_map(|(i, cause)| {
+        rivals
+            .iter()
+            .enumerate()
+            .filter(move |(j, _)| i != *j)
+            .map(move |(_, other)| (cause, other))
+    });
+    let logs = pairs.filter_map(|(cause, other)| {
+        let id = id(cause).filter(|id| !is_open(other, id))?;
+        let cause = (id, &cause.settled.fit);
+        Some(expected_log_bayes_factor(survey, cause, other, set, noise))
+    });
+    logs.fold(f64::INFINITY, f64::min)
 }
 
 /// Two runs that may decide together: the rod at two speeds, or any run beside the best.
@@ -251,6 +286,7 @@ fn informing(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<NextRun> {
         with: None,
         parts: Vec::new(),
         expected_log_bayes_factor: log,
+        decides: true,
         why: format!("no cause is undecided; {} narrows b0 and kappa most", plan.words(w)),
     })
 }

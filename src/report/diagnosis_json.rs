@@ -126,6 +126,7 @@ fn next_run(next: &NextRun) -> Value {
     object.insert("parts".to_owned(), json!(next.parts));
     let log = log10(next.expected_log_bayes_factor);
     object.insert("expected_log10_bayes_factor".to_owned(), json!(log));
+    object.insert("decides".to_owned(), json!(next.decides));
     object.insert("why".to_owned(), json!(next.why));
     Value::Object(object)
 }

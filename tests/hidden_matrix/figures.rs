@@ -57,12 +57,25 @@ pub(crate) fn append(page: &mut String, outcomes: &[Value]) {
         covered[1]
     )
     .expect("text");
-    let towed: Vec<bool> =
-        right.iter().filter_map(|outcome| outcome["decided"].as_bool()).collect();
-    let decided = towed.iter().filter(|decided| **decided).count();
-    let share = 100.0 * decided as f64 / towed.len().max(1) as f64;
-    writeln!(page, "| undecided, and the run asked for decides | {} | {share:.1} % |", towed.len())
-        .expect("text");
+    asked(page, &right);
+}
+
+/// How often the runs that were asked for decide: all of them, and those told as deciding ones.
+fn asked(page: &mut String, right: &[&Value]) {
+    let all: Vec<(bool, bool)> = right
+        .iter()
+        .filter_map(|outcome| {
+            let is_promised = outcome["next_run"]["decides"].as_bool().unwrap_or(true);
+            Some((outcome["decided"].as_bool()?, is_promised))
+        })
+        .collect();
+    let promised: Vec<(bool, bool)> = all.iter().copied().filter(|(_, told)| *told).collect();
+    for (runs, of) in [("the run asked for", &all), ("one that was told to decide", &promised)] {
+        let decided = of.iter().filter(|(decided, _)| *decided).count();
+        let share = 100.0 * decided as f64 / of.len().max(1) as f64;
+        writeln!(page, "| undecided, and {runs} decides | {} | {share:.1} % |", of.len())
+            .expect("text");
+    }
 }
 
 /// A number, or the mean of a belief.

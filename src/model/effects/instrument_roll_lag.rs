@@ -20,7 +20,8 @@ pub(super) const EFFECT: Effect = Effect {
     reference: "filter theory",
 };
 
-/// First-order lag of a course that is straight between samples.
+/// First-order lag of a course whose rate is straight between samples: of `phi' = r + a t` it lacks
+/// `-tau phi' + tau^2 a`, once what it began with has faded.
 fn lag<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
     let tau_s = p[0];
     let Some(first) = all.first() else { return Vec::new() };
@@ -31,11 +32,48 @@ fn lag<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
     let mut lost = vec![behind];
     for pair in all.windows(2) {
         let step_s = pair[1].time_s - pair[0].time_s;
-        let slope = (pair[1].roll_rad - pair[0].roll_rad) / step_s;
+        let [before, after] = [pair[0].rate_rad_per_s, pair[1].rate_rad_per_s];
+        let bend = tau_s * tau_s * ((after - before) / step_s);
         let fades =
             if tau_s.value() > 0.0 { (N::from(-step_s) / tau_s).exp() } else { N::from(0.0) };
-        behind = -tau_s * slope + (behind + tau_s * slope) * fades;
+        behind = bend - tau_s * after + (behind + tau_s * before - bend) * fades;
         lost.push(behind);
     }
     lost
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::effect::Circumstances;
+    use crate::model::term::tests::run;
+    use crate::run::RunKind;
+
+    #[test]
+    fn a_short_lag_of_a_sine_is_that_of_the_filter_however_coarse_the_samples() {
+        // `phi = sin w t` leaves the filter as `Im exp(i w t) / (1 + i w tau)`.
+        let (rad_s, tau_s, step_s) = (10.0_f64, 1e-3, 0.02);
+        let run = Circumstances { rolling_rad_s: rad_s, ..run(RunKind::Forced) };
+        let at = |k: usize| {
+            let time_s = k as f64 * step_s;
+            let (sin, cos) = (rad_s * time_s).sin_cos();
+            Instant {
+                time_s,
+                roll_rad: sin,
+                rate_rad_per_s: rad_s * cos,
+                acceleration_rad_per_s2: -rad_s * rad_s * sin,
+                moment_n_m: 0.0,
+                natural_rad_s: rad_s,
+                b1_per_s: 0.3,
+                run: &run,
+            }
+        };
+        let all: Vec<Instant<'_>> = (0..200).map(at).collect();
+        let slow = rad_s * tau_s;
+        for (instant, lost) in all.iter().zip(lag(&all, &[tau_s])) {
+            let (sin, cos) = (rad_s * instant.time_s).sin_cos();
+            let exact = (sin - slow * cos) / (1.0 + slow * slow) - sin;
+            assert!((lost - exact).abs() < 2e-3 * slow, "{lost} for {exact}");
+        }
+    }
 }
