@@ -92,6 +92,8 @@ fn read_back(recording: &Path) -> (BTreeMap<String, Read>, BTreeMap<&'static str
                     Some(LinkEvent::Received { at_ns, bytes, .. }) => {
                         session.receive(&bytes, at_ns, &mut decoded);
                     }
+                    // It was asked who it is.
+                    Some(LinkEvent::Sent { .. }) => {}
                     other => panic!("{other:?}"),
                 }
                 read.take(&decoded);

@@ -151,7 +151,7 @@ fn a_pause_or_another_campaign_file_loses_no_frame_and_another_instrument_leaves
     assert_eq!(daemon.said().matches("linked").count(), 2, "{}", daemon.said());
     tank.edit(
         "[[device]]\nname = \"carriage\"",
-        "[[device]]\nidentity = \"\"\nname = \"carriage\"",
+        "[[device]]\nlag = { kind = \"delay\", time_s = 0.001 }\nname = \"carriage\"",
     );
     daemon.signal("-HUP");
     daemon.wait_for("linked", 4);

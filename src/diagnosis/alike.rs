@@ -62,8 +62,8 @@ pub(super) fn open_shapes(
     shapes(survey, fit, fit.extensions.len().checked_sub(1)?, narrow)
 }
 
-/// Logarithm by which runs must narrow the shapes of the newest effect, that they may say whether it
-/// is a narrower form: to a quarter of what that allows, so that a shape may lie half of it off.
+/// Logarithm by which runs must narrow the shapes of the newest effect, that they may say whether
+/// it is a narrower form: to a quarter of what that allows, so that a shape may lie half of it off.
 /// None where it is no wider form.
 pub(super) fn narrowing_wanted(survey: &Survey, wide: &Settled, narrow: &str) -> Option<f64> {
     let (form, shapes) = open_shapes(survey, &wide.fit, narrow)?;
