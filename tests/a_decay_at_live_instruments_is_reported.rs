@@ -93,7 +93,7 @@ fn what_a_decay_says_is_told_before_its_end_is_known_and_replaced_by_what_it_say
     println!(
         "a report held the run {held_s:.2} s after its last sample, known over {known_s:.2} s"
     );
-    assert!(held_s < known_s, "{held_s} and {known_s}");
+    assert!(held_s < 0.8 * known_s, "{held_s} and {known_s}");
     let replayed = rolltank(tank.path(), &["identify", ".", "--json"]);
     assert_eq!(replayed.out, tank.text("results/identification.json"), "{said}");
 }

@@ -67,6 +67,7 @@ fn child_on_the_full_disk() {
     let recordings = tank.files("live", ".mcap");
     assert_eq!(recordings.len(), 2, "{said}");
     let mut recorded = replay::Recorded::open(&recordings[0]).expect("it is whole");
+    assert_eq!(recorded.metadata()["exit_status"], "abort", "{said}");
     let first_s =
         std::iter::from_fn(|| recorded.next_record().expect("it can be read")).find_map(|record| {
             match record {

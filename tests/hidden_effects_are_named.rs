@@ -208,6 +208,29 @@ fn a_second_cause_is_found_beside_one_that_fills_the_record() {
 }
 
 #[test]
+fn waves_from_the_walls_leave_no_other_name_beside_them() {
+    // Their form leaves some thousandths of the motion, which other effects took up before it came.
+    for (set, size) in [(RunSet::Rest, 1.0), (RunSet::Speeds, 2.0)] {
+        let (_, verdict) = diagnosed(set, &["tank.wall_reflection"], size, 851);
+        assert_eq!(named(&verdict), ["tank.wall_reflection"]);
+    }
+}
+
+#[test]
+fn a_run_that_may_not_decide_is_told_as_such() {
+    // A skew of a millisecond differs from a lag as small at no frequency that the rod reaches.
+    let asked = |set, id, seed| {
+        let (_, verdict) = diagnosed(set, &[id], 1.0, seed);
+        let next = verdict.json["next_run"].clone();
+        (next["decides"].as_bool().expect("it is told"), next["why"].to_string())
+    };
+    let (decides, why) = asked(RunSet::Forced, "instrument.channel_skew", 851);
+    assert!(!decides && why.contains("which may not decide"), "{why}");
+    let (decides, why) = asked(RunSet::Rest, "restoring.cubic", drawn_seed("cubic restoring"));
+    assert!(decides && !why.contains("may not"), "{why}");
+}
+
+#[test]
 fn a_carriage_that_shakes_the_model_is_named_and_hides_no_other_cause() {
     // Bilge keels leave little of a roll but the shaking, which lies among its harmonics.
     let told = outcome(RunSet::Speeds, "tank.carriage_vibration", 2.0, 763);

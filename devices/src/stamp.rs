@@ -192,9 +192,7 @@ impl Stamper {
             }
         }
     }
-}
 
-impl Stamper {
     /// What the ticks say of losses and repeats where no sequence number does.
     fn step(&mut self, continued: u64, stamp: &mut Stamp) {
         if self.sequence.is_some() {

@@ -66,12 +66,14 @@ fn noise_to_come(survey: &Survey, noise: &[ChannelNoise]) -> [Option<(f64, f64)>
         let each = survey.runs.iter().zip(noise).filter(|(run, _)| reads(run));
         // A memory from one sample to the next is a shorter one where these lie further apart.
         let of_run = |(run, noise): (&Arc<Observation>, &ChannelNoise)| {
-            let interval_s = run.at.span_s / (run.roll_time_s.len() as f64 - 1.0).max(1.0);
+            let n_samples = [&run.roll_time_s, &run.moment_time_s][channel].len();
+            let interval_s = run.at.span_s / (n_samples as f64 - 1.0).max(1.0);
             let samples = SAMPLE_S / interval_s.max(1e-6);
             (noise.sd[channel], noise.correlation[channel].powf(samples))
         };
         let mut all: Vec<(f64, f64)> = each.map(of_run).collect();
-        // What a slow sine shows is blurred by so much.
+        // So much noise is on a sine that is slow beside the memory: of a first-order one, the root
+        // of its spectrum at nought.
         let blur = |(sd, memory): &(f64, f64)| sd * ((1.0 + memory) / (1.0 - memory)).sqrt();
         all.sort_by(|a, b| blur(a).total_cmp(&blur(b)));
         all.get(all.len() / 2).copied()

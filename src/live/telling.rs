@@ -81,14 +81,10 @@ impl UnderWay<'_> {
     fn begin(&mut self, begun: Begun) -> Begun {
         self.state.n_begun += 1;
         let begun = Begun { name: format!("run-{}", self.state.n_begun), ..begun };
-        let kind = match begun.kind {
-            RunKind::Decay => "decay",
-            RunKind::Forced => "forced",
-        };
         self.keeper.push(Record::RunStart(RunStart {
             time_s: self.now_s(),
             run: begun.name.clone(),
-            kind: kind.to_owned(),
+            kind: begun.kind.name().to_owned(),
             condition: self.campaign.live.condition.clone(),
             start_s: begun.start_s,
         }));
@@ -149,7 +145,7 @@ impl UnderWay<'_> {
             }
         };
         let run = &begun.name;
-        tracing::info!(run, kind = ?found.kind, start_s, end_s, "run found");
+        tracing::info!(run, kind = found.kind.name(), start_s, end_s, "run found");
         begun.name
     }
 
