@@ -28,6 +28,32 @@ fn entered(tank: &LiveTank, arguments: &[&str], lines: &str) -> (Option<i32>, St
     (ended.status.code(), text(&ended.stdout), text(&ended.stderr))
 }
 
+/// Calibrates the force cell with loads [N] and the counts that each adds to its reading, each on the
+/// cell before it is entered; the line for each load, and what is said at the end.
+fn loaded(tank: &LiveTank, more: &[&str], loads: &[(i64, i64)]) -> (Vec<String>, Vec<String>) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_rolltank"))
+        .args(["calibrate", ".", "--channel", "force", "--by", "B. Olsen"])
+        .args(more)
+        .current_dir(tank.path())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the program was built");
+    let (enter, told) = (child.stdin.take(), child.stdout.take());
+    let (mut enter, told) = (enter.expect("it is piped"), told.expect("it is piped"));
+    let mut told = BufReader::new(told).lines().map(|line| line.expect("text"));
+    let mut each = |(load_n, counts): &(i64, i64)| {
+        tank.load_counts.store(*counts, Ordering::Relaxed);
+        writeln!(enter, "{load_n}").expect("it listens");
+        told.next().expect("a line for each load")
+    };
+    let lines = loads.iter().map(&mut each).collect();
+    writeln!(enter).expect("it listens");
+    let last = told.collect();
+    assert!(child.wait().expect("it is our child").success(), "{last:?}");
+    (lines, last)
+}
+
 #[test]
 fn devices_and_check_tell_who_answers_and_what_it_reads() {
     let tank = LiveTank::at_speed(1.0);
@@ -121,7 +147,7 @@ fn a_port_that_is_missing_busy_or_another_instruments_is_told_with_its_line_and_
         .expect("the daemon reads");
     // The daemon has read; one load makes no gain.
     assert!(out.contains("load 1 m/s: raw ") && out.contains(" readings"), "{out}{err}");
-    assert!(code == Some(1) && err.contains("1 readings, at least 2"), "{err}");
+    assert!(code == Some(1) && err.contains("different loads: 1, this curve needs 2"), "{err}");
     daemon.terminate();
     tank.edit("identify = true }", "identify = true }\nidentity = \"HBM\"");
     let told = rolltank(tank.path(), &["check", ".", "--seconds", "0.5"]);
@@ -173,7 +199,7 @@ fn a_zero_and_a_gain_are_taken_live_and_stand_in_the_next_recording() {
     // One load twice makes no gain, and is refused.
     let (code, _, said) = entered(&tank, &calibrate, "1.0\n1.0\n\n");
     assert_eq!(code, Some(1), "{said}");
-    assert!(said.contains("all loads are 1, a gain needs two that differ"), "{said}");
+    assert!(said.contains("different loads: 1, this curve needs 2 at least"), "{said}");
 
     let mut daemon = Daemon::start(&tank, &[]);
     daemon.wait_for("linked", 2);
@@ -197,30 +223,14 @@ fn a_whole_gain_is_taken_through_the_page_of_a_running_daemon() {
     let mut daemon = Daemon::start(&tank, &[]);
     daemon.wait_for("linked", 2);
     let address = daemon.address();
-    let mut child = Command::new(env!("CARGO_BIN_EXE_rolltank"))
-        .args(["calibrate", ".", "--channel", "force", "--by", "B. Olsen"])
-        .args(["--note", "weights of class M1", "--page", &address])
-        .current_dir(tank.path())
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .expect("the program was built");
-    let (mut enter, told) = (child.stdin.take().unwrap(), child.stdout.take().unwrap());
-    let mut told = BufReader::new(told).lines();
-    // 102 counts of nothing and 200 a newton; each load is on the cell before it is entered.
+    // 102 counts of nothing and 200 a newton.
     let counts = |load_n: i64| 102 + 200 * load_n;
-    for load_n in [0, 10, 25, -5] {
-        tank.load_counts.store(counts(load_n), Ordering::Relaxed);
-        writeln!(enter, "{load_n}").expect("it listens");
-        let line = told.next().expect("a line for each load").expect("text");
-        assert!(
-            line.starts_with(&format!("load {load_n} N: raw {}", counts(load_n) / 100)),
-            "{line}"
-        );
+    let loads = [0, 10, 25, -5].map(|load_n| (load_n, counts(load_n)));
+    let (lines, last) =
+        loaded(&tank, &["--note", "weights of class M1", "--page", &address], &loads);
+    for (line, (load_n, counts)) in lines.iter().zip(loads) {
+        assert!(line.starts_with(&format!("load {load_n} N: raw {}", counts / 100)), "{line}");
     }
-    writeln!(enter).expect("it listens");
-    let last: Vec<String> = told.map(|line| line.expect("text")).collect();
-    assert!(child.wait().expect("it is our child").success(), "{last:?}");
     assert!(last[0].starts_with("force of cell: zero 10"), "{last:?}");
     assert!(last[1].contains("systemctl reload"), "{last:?}");
 
@@ -256,4 +266,48 @@ fn a_whole_gain_is_taken_through_the_page_of_a_running_daemon() {
     assert!((200.0 * gain - 1.0).abs() < 1e-3, "{gain}");
     let mean = forces.iter().sum::<f64>() / forces.len() as f64;
     assert!((mean - 12.0).abs() < 0.05, "{mean} N of {} samples", forces.len());
+}
+
+#[test]
+fn a_cell_that_bends_is_calibrated_by_a_polynomial_and_by_a_table() {
+    let tank = LiveTank::with_a_cell(4.0);
+    let counts = |load_n: i64| 102 + 200 * load_n - 2 * load_n * load_n;
+    let loads = [-20, -10, 0, 10, 25].map(|load_n| (load_n, counts(load_n)));
+    let with = |curve: &[&str]| {
+        let (_, last) = loaded(&tank, &[curve, &["--seconds", "0.4"]].concat(), &loads);
+        let taken = tank.text("calibrations.toml");
+        let taken: toml::Table = toml::from_str(&taken).expect("TOML");
+        let newest = taken["calibration"].as_array().expect("a list").last().expect("one").clone();
+        let curve: Curve = newest["curve"].clone().try_into().expect("a curve");
+        let zero_raw = newest["zero_raw"].as_float().expect("a number");
+        (curve, zero_raw, last.concat())
+    };
+    let off = |curve: &Curve, zero_raw: f64, load_n: i64| {
+        (curve.value(counts(load_n) as f64 - zero_raw) - load_n as f64).abs()
+    };
+    let (line, zero_raw, said) = with(&["--curve", "gain"]);
+    assert!(off(&line, zero_raw, -20) > 1.0 && said.contains("off the loads by "), "{said}");
+    let (cubic, zero_raw, said) = with(&["--curve", "polynomial", "--degree", "3"]);
+    assert!(matches!(cubic, Curve::Polynomial(_)) && said.contains("off the loads by "), "{said}");
+    // A load between those applied is read right, too.
+    for load_n in [-20, -15, -4, 0, 6, 18, 25] {
+        assert!(off(&cubic, zero_raw, load_n) < 0.15, "{load_n} N, {zero_raw}: {cubic:?}");
+    }
+    let (table, zero_raw, said) = with(&["--curve", "table"]);
+    assert!(said.contains("as few loads fit any such curve"), "{said}");
+    for (load_n, _) in loads {
+        assert!(off(&table, zero_raw, load_n) < 0.02, "{load_n} N, {zero_raw}: {table:?}");
+    }
+
+    tank.load_counts.store(counts(-10), Ordering::Relaxed);
+    let mut daemon = Daemon::start(&tank, &[]);
+    let address = daemon.address();
+    let reads = || {
+        let status = get(&address, "/status", &[]).body;
+        let status: serde_json::Value = serde_json::from_str(&status).unwrap_or_default();
+        let value = status["devices"][1]["channels"][0]["value"].as_f64();
+        value.is_some_and(|force_n| (force_n + 10.0).abs() < 0.1)
+    };
+    daemon.wait_until("-10 N are read as -10 N by the table", reads);
+    daemon.terminate();
 }

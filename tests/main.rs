@@ -11,6 +11,7 @@ mod browser;
 mod calm_water_is_foretold;
 mod campaign_folder;
 mod chromium;
+mod debian;
 mod decays_are_identified;
 mod dense_posterior;
 mod draws_belong_together;

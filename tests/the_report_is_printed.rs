@@ -11,13 +11,14 @@ use serde_json::Value;
 
 use crate::campaign_folder::{CampaignFolder, rolltank};
 use crate::chromium;
+use crate::debian;
 use crate::kvlcc2_is_identified_as_published;
 use crate::synthetic_results;
 use crate::the_report_is_complete_and_self_contained::assert_rounded;
 
 /// The text of a PDF by one of the modes of `pdftotext`.
 fn text(pdf: &Path, mode: &str) -> String {
-    let program = chromium::debian_program("pdftotext", "poppler-utils");
+    let program = debian::program("pdftotext", "poppler-utils");
     let output = Command::new(program).arg(mode).arg(pdf).arg("-").output().expect("it runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).expect("text")

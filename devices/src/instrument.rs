@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::io;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -11,7 +12,8 @@ use crate::driver::Session;
 use crate::error::InstrumentError;
 use crate::interpreter::{InstrumentEvent, Interpreter};
 use crate::port::{
-    LinkEvent, LinkOptions, LinkReader, LinkThread, Outlet, PortFault, adapter_latency_s,
+    LinkEvent, LinkOptions, LinkReader, LinkThread, Outlet, PortFault, USB_SERIAL_FOLDER,
+    adapter_latency_s,
 };
 use crate::setup::DeviceConfig;
 use crate::{Device, DeviceError, Quantity, Reading, Sample};
@@ -100,7 +102,8 @@ fn conversation(config: &DeviceConfig) -> Result<(Session, LinkOptions), Instrum
 }
 
 fn latency_s(config: &DeviceConfig) -> f64 {
-    adapter_latency_s(&config.port).unwrap_or(0.0).max(PLAIN_LATENCY_S)
+    let held_s = adapter_latency_s(&config.port, Path::new(USB_SERIAL_FOLDER));
+    held_s.unwrap_or(0.0).max(PLAIN_LATENCY_S)
 }
 
 fn no_thread(config: &DeviceConfig, error: &io::Error) -> InstrumentError {

@@ -50,11 +50,6 @@ impl Quality {
         !none.into_iter().any(|flag| self.has(flag))
     }
 
-    /// The flags as bits, for recordings.
-    pub fn bits(self) -> u8 {
-        self.0
-    }
-
     /// Names of the flags that are set.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
         Self::NAMES.into_iter().filter(move |(flag, _)| self.has(*flag)).map(|(_, name)| name)

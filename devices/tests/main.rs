@@ -10,6 +10,8 @@ mod a_wrong_setup_is_told_with_its_remedy;
 mod any_bytes_are_survived;
 mod bench;
 mod clocks_are_known_within_their_bound;
+#[path = "../../tests/debian.rs"]
+mod debian;
 mod every_driver_reads_its_instrument;
 mod every_emulator_obeys_its_faults;
 mod fast_samples_are_read_without_a_loss;

@@ -1,47 +1,47 @@
-//! The reference Modbus server in Python answers our driver over a pseudo-terminal.
+//! The reference Modbus server in Python answers our driver over a pair of ports by socat.
 
 use std::env;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::Arc;
+use std::thread;
 use std::time::Duration;
 
 use devices::clock::WallClock;
 use devices::{Instrument, InstrumentEvent};
 
 use crate::bench::{channels, device};
+use crate::debian;
 
-/// Two pseudo-terminals joined byte for byte, one of them named by the first argument, and a
-/// pymodbus server at the other.
+/// A pymodbus server at the port that the first argument names.
 const SERVE: &str = r#"
-import asyncio, os, sys, threading, tty
+import asyncio, sys
 from pymodbus.server import ModbusSerialServer
 from pymodbus.simulator import DataType, SimData, SimDevice
-
-ours, ours_name = os.openpty()
-theirs, theirs_name = os.openpty()
-for end in (ours, ours_name, theirs, theirs_name):
-    tty.setraw(end)
-
-def carry(source, target):
-    while True:
-        os.write(target, os.read(source, 4096))
-
-for pair in ((ours, theirs), (theirs, ours)):
-    threading.Thread(target=carry, args=pair, daemon=True).start()
-os.symlink(os.ttyname(ours_name), sys.argv[1])
 
 async def serve():
     data = [SimData(0, values=[12.345, -3.75], datatype=DataType.FLOAT32),
             SimData(4, values=[-1234], datatype=DataType.INT16)]
     device = SimDevice(1, simdata=data)
-    server = ModbusSerialServer(device, port=os.ttyname(theirs_name), baudrate=19200)
+    server = ModbusSerialServer(device, port=sys.argv[1], baudrate=19200)
     print("serving", flush=True)
     await server.serve_forever()
 
 asyncio.run(serve())
 "#;
+
+/// Two ports that socat joins byte for byte.
+fn socat(ours: &Path, theirs: &Path) -> Running {
+    let port = |path: &Path| format!("pty,rawer,link={}", path.display());
+    let program = debian::program("socat", "socat");
+    let socat = Command::new(program).args([port(ours), port(theirs)]).spawn().map(Running);
+    let socat = socat.expect("socat runs");
+    while !ours.exists() || !theirs.exists() {
+        thread::sleep(Duration::from_millis(5));
+    }
+    socat
+}
 
 /// The interpreter of a virtual environment that has `pymodbus`; none without Python or network.
 fn python() -> Option<PathBuf> {
@@ -70,10 +70,10 @@ fn python() -> Option<PathBuf> {
     }
 }
 
-/// Ends the server with the test.
-struct Server(Child);
+/// A program that ends with the test.
+struct Running(Child);
 
-impl Drop for Server {
+impl Drop for Running {
     fn drop(&mut self) {
         self.0.kill().ok();
         self.0.wait().ok();
@@ -93,12 +93,14 @@ fn registers_are_read_and_an_address_beyond_them_is_refused() {
             { function = 3, address = 900, type = "int16" },
         ]
     "#;
-    let (_folder, config) = device("modbus-transmitter", &format!("{fields}\n{}", channels(4)));
+    let (folder, config) = device("modbus-transmitter", &format!("{fields}\n{}", channels(4)));
+    let theirs = folder.path().join("theirs");
+    let _pair = socat(&config.port, &theirs);
     let mut server = Command::new(python)
-        .args(["-c", SERVE, &config.port.display().to_string()])
+        .args(["-c", SERVE, &theirs.display().to_string()])
         .stdout(Stdio::piped())
         .spawn()
-        .map(Server)
+        .map(Running)
         .unwrap();
     let mut line = String::new();
     BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut line).unwrap();

@@ -3,6 +3,7 @@
 mod calibrations;
 mod columns;
 mod judged;
+mod known_loads;
 mod live;
 mod mistake;
 mod particulars;
@@ -26,6 +27,7 @@ use crate::model::model_file::ModelFile;
 use crate::roll::exciting_moment::Exciter;
 
 pub use calibrations::{CALIBRATIONS_FILE, TakenCalibration, ZeroTaken, keep_calibration};
+pub use known_loads::{CurveForm, FromLoads, Loaded, LoadsError, curve_from_loads};
 pub use live::LIVE_FOLDER;
 pub use mistake::Mistake;
 pub use plan::PlannedRuns;

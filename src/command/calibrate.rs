@@ -1,4 +1,4 @@
-//! `rolltank calibrate`: gain and zero of one channel from known loads, one after the other.
+//! `rolltank calibrate`: zero and curve of one channel from known loads, one after the other.
 
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::PathBuf;
@@ -6,13 +6,13 @@ use std::thread;
 use std::time::Duration;
 
 use ::devices::Quantity;
-use ::devices::channel::{Calibration, Curve, gain_from_loads, zero_from_readings};
-use clap::Args;
+use ::devices::channel::{Calibration, Curve, zero_from_readings};
+use clap::{Args, ValueEnum};
 
 use super::calibrating::{ChannelName, device_of, keep, now, readings};
 use super::daemon_page::DaemonPage;
 use super::{Exit, Failure};
-use crate::campaign::{self, TakenCalibration};
+use crate::campaign::{self, CurveForm, FromLoads, Loaded, TakenCalibration};
 use crate::page::status::RecentRaw;
 
 /// What the page of a daemon tells is a mean over so long, all of it under the load.
@@ -26,6 +26,13 @@ pub(super) struct Arguments {
     /// Channel to calibrate
     #[arg(long, value_enum)]
     channel: ChannelName,
+    /// Form of the curve
+    #[arg(long, value_enum, default_value_t = CurveName::Gain)]
+    curve: CurveName,
+    /// Highest power of a polynomial
+    #[arg(long, value_name = "N", default_value_t = 2,
+          value_parser = clap::value_parser!(u8).range(1..=5))]
+    degree: u8,
     /// Who takes it, as recordings will say
     #[arg(long, value_name = "NAME")]
     by: String,
@@ -40,6 +47,17 @@ pub(super) struct Arguments {
     daemon: DaemonPage,
 }
 
+/// A form of curve as it is named on the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum CurveName {
+    /// A straight line through the loads
+    Gain,
+    /// A polynomial through the loads, its highest power in --degree
+    Polynomial,
+    /// Straight from each load to the next
+    Table,
+}
+
 pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Failure> {
     let campaign = campaign::read(&arguments.campaign)?;
     let quantity = arguments.channel.quantity();
@@ -48,11 +66,11 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     };
     let failed = |source| Failure::Calibration { device: device.name.clone(), quantity, source };
     let unit = asked_unit(quantity);
-    let mut pairs = Vec::new();
+    let mut loads = Vec::new();
     let mut lines = io::stdin().lock().lines();
     loop {
         if io::stdin().is_terminal() {
-            write!(out, "load {} [{unit}], empty to end: ", pairs.len() + 1)?;
+            write!(out, "load {} [{unit}], empty to end: ", loads.len() + 1)?;
             out.flush()?;
         }
         let line = lines.next().transpose()?.unwrap_or_default();
@@ -71,31 +89,45 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
         };
         writeln!(out, "load {load} {unit}: raw {mean:.4}, sd {sd:.4}, {n_readings} readings")?;
         out.flush()?;
-        pairs.push([mean, si(quantity, load)]);
+        loads.push(Loaded { load: si(quantity, load), raw: mean });
     }
-    let (zero_raw, gain, deviation) = gain_from_loads(&pairs).map_err(failed)?;
-    let calibration = Calibration {
-        zero_raw,
-        curve: Curve::Gain(gain),
-        by: arguments.by.clone(),
-        at: now(),
-        note: arguments.note.clone(),
+    let form = match arguments.curve {
+        CurveName::Gain => CurveForm::Gain,
+        CurveName::Polynomial => CurveForm::Polynomial { degree: usize::from(arguments.degree) },
+        CurveName::Table => CurveForm::Table,
     };
-    writeln!(
-        out,
-        "{} of {}: zero {zero_raw}, gain {gain} {} per raw unit, off the line by {deviation:.6} {} \
-         at most",
-        quantity.name(),
-        device.name,
-        quantity.unit(),
-        quantity.unit(),
-    )?;
+    let from_loads = campaign::curve_from_loads(form, &loads).map_err(|source| Failure::Loads {
+        device: device.name.clone(),
+        quantity,
+        source,
+    })?;
+    writeln!(out, "{} of {}: {}", quantity.name(), device.name, told(&from_loads, quantity))?;
+    let FromLoads { zero_raw, curve, .. } = from_loads;
+    let (by, at, note) = (arguments.by.clone(), now(), arguments.note.clone());
+    let calibration = Calibration { zero_raw, curve, by, at, note };
     let taken = TakenCalibration { device: device.name.clone(), quantity, calibration };
     keep(&arguments.campaign, taken)?;
     if arguments.daemon.is_named() {
         writeln!(out, "in force from the next rest on, once the daemon is told: systemctl reload")?;
     }
     Ok(Exit::Done)
+}
+
+/// Zero, curve, and how far it is off the loads.
+fn told(from_loads: &FromLoads, quantity: Quantity) -> String {
+    let (zero_raw, unit) = (from_loads.zero_raw, quantity.unit());
+    let curve = match &from_loads.curve {
+        Curve::Gain(gain) => format!("gain {gain} {unit} per raw unit"),
+        Curve::Polynomial(coefficients) => {
+            format!("polynomial {coefficients:?} in the raw reading less its zero, in {unit}")
+        }
+        Curve::Table(pairs) => format!("table of {} loads", pairs.len()),
+    };
+    let off = from_loads.deviation.map_or_else(
+        || "as few loads fit any such curve: more would tell how far it is off".to_owned(),
+        |deviation| format!("off the loads by {deviation:.6} {unit} at most"),
+    );
+    format!("zero {zero_raw}, {curve}, {off}")
 }
 
 /// The unit in which a person applies loads.

@@ -1,10 +1,10 @@
 //! `rolltank check`: every mistake of a campaign at once, without identifying anything.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use ::devices::InstrumentError;
-use ::devices::port::{BY_ID_FOLDER, stable_name};
+use ::devices::port::{BY_ID_FOLDER, USB_SERIAL_FOLDER, adapter_latency_s, stable_name};
 use ::devices::probe::ProbeReport;
 use ::replay::{Note, Severity};
 use clap::Args;
@@ -19,6 +19,9 @@ use crate::pipeline::{self, PipelineError, Surveyed};
 
 /// Schema of the JSON output; its number rises when a field changes its meaning.
 const SCHEMA: &str = "rolltank.check/1";
+
+/// What an adapter may hold bytes back [s] without a word about it.
+const LONGEST_HELD_S: f64 = 2e-3;
 
 /// Check the campaign file and read every recording; tells every mistake with its place
 #[derive(Debug, Args)]
@@ -81,6 +84,16 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     for (device, report) in live.iter().zip(&asked) {
         if let Ok(report) = report {
             devices::tell(out, device, report)?;
+        }
+        let held_s = adapter_latency_s(&device.port, Path::new(USB_SERIAL_FOLDER));
+        if let Some(held_s) = held_s.filter(|held_s| *held_s > LONGEST_HELD_S) {
+            writeln!(
+                out,
+                "  note: the adapter of {} holds bytes back for {:.0} ms, and times are known no \
+                 better; docs/60-rolltank.rules sets it to 1 ms at every plugging in",
+                device.port.display(),
+                held_s * 1e3
+            )?;
         }
         if let Some(name) = stable_name(&device.port, &arguments.by_id) {
             writeln!(

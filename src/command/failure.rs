@@ -6,7 +6,7 @@ use std::iter::successors;
 use std::path::PathBuf;
 
 use super::Exit;
-use crate::campaign::Mistake;
+use crate::campaign::{LoadsError, Mistake};
 use crate::live::LiveError;
 use crate::pipeline::{PipelineError, PrintError, WriteError};
 use crate::tank::{ScenarioError, TankError};
@@ -56,6 +56,16 @@ pub enum Failure {
         quantity: Quantity,
         /// Why not.
         source: CalibrationError,
+    },
+    /// The loads of a channel make no curve.
+    #[error("device \"{device}\": {}: {source}", quantity.name())]
+    Loads {
+        /// The device.
+        device: String,
+        /// The channel.
+        quantity: Quantity,
+        /// What they lack.
+        source: LoadsError,
     },
     /// No instrument measures a channel that is to be calibrated.
     #[error("no [[device]] measures the {}", quantity.name())]

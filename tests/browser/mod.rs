@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::OnceLock;
 
-use super::chromium;
+use super::{chromium, debian};
 
 /// What every story shares: the programs, and the folder with the packages that drive the browser.
 struct Stage {
@@ -25,7 +25,7 @@ fn stage() -> &'static Stage {
     static STAGE: OnceLock<Stage> = OnceLock::new();
     STAGE.get_or_init(|| Stage {
         chromium: chromium::program(),
-        node: chromium::debian_program("node", "nodejs"),
+        node: debian::program("node", "nodejs"),
         packages: packages(),
     })
 }
@@ -45,7 +45,7 @@ fn packages() -> PathBuf {
     for name in ["package.json", "package-lock.json"] {
         fs::copy(beside(name), home.join(name)).expect("the disk has room");
     }
-    let npm = chromium::debian_program("npm", "npm");
+    let npm = debian::program("npm", "npm");
     let output = Command::new(npm)
         .args(["ci", "--no-audit", "--no-fund"])
         .current_dir(&home)

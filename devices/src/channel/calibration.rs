@@ -41,6 +41,19 @@ impl Default for Curve {
     }
 }
 
+impl Curve {
+    /// The value in SI of a raw reading less its zero.
+    pub fn value(&self, x: f64) -> f64 {
+        match self {
+            Self::Gain(gain) => gain * x,
+            Self::Polynomial(coefficients) => {
+                coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * x + coefficient)
+            }
+            Self::Table(pairs) => interpolated(pairs, x),
+        }
+    }
+}
+
 /// A calibration that gives no value.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum CalibrationError {
@@ -58,7 +71,7 @@ pub enum CalibrationError {
         /// Raw reading of the next.
         after: f64,
     },
-    /// Too few readings or loads.
+    /// Too few readings.
     #[error("{got} readings, at least {needed} are needed")]
     Few {
         /// How many there are.
@@ -66,22 +79,12 @@ pub enum CalibrationError {
         /// How many are needed.
         needed: usize,
     },
-    /// All loads are the same.
-    #[error("all loads are {0}, a gain needs two that differ")]
-    OneLoad(f64),
 }
 
 impl Calibration {
     /// The value in SI of a raw reading.
     pub fn value(&self, raw: f64) -> f64 {
-        let x = raw - self.zero_raw;
-        match &self.curve {
-            Curve::Gain(gain) => gain * x,
-            Curve::Polynomial(coefficients) => {
-                coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * x + coefficient)
-            }
-            Curve::Table(pairs) => interpolated(pairs, x),
-        }
+        self.curve.value(raw - self.zero_raw)
     }
 
     /// Whether it gives a value for every reading.
@@ -133,33 +136,6 @@ pub fn zero_from_readings(raw: &[f64]) -> Result<(f64, f64), CalibrationError> {
     Ok((mean, variance.sqrt()))
 }
 
-/// Zero and gain of a straight line through pairs of raw reading and applied SI load, and the
-/// largest deviation from it in SI.
-///
-/// # Errors
-/// [`CalibrationError`] when the loads give no line.
-pub fn gain_from_loads(pairs: &[[f64; 2]]) -> Result<(f64, f64, f64), CalibrationError> {
-    if pairs.len() < 2 {
-        return Err(CalibrationError::Few { got: pairs.len(), needed: 2 });
-    }
-    let n = pairs.len() as f64;
-    let mean_raw = pairs.iter().map(|[raw, _]| raw).sum::<f64>() / n;
-    let mean_load = pairs.iter().map(|[_, load]| load).sum::<f64>() / n;
-    let spread: f64 = pairs.iter().map(|[_, load]| (load - mean_load).powi(2)).sum();
-    if spread == 0.0 {
-        return Err(CalibrationError::OneLoad(mean_load));
-    }
-    // Loads are known, readings scatter: raw on load, then turned round.
-    let together: f64 = pairs.iter().map(|[raw, load]| (raw - mean_raw) * (load - mean_load)).sum();
-    let gain = spread / together;
-    if !gain.is_finite() {
-        return Err(CalibrationError::Number(gain));
-    }
-    let zero_raw = mean_raw - mean_load / gain;
-    let deviation = |[raw, load]: &[f64; 2]| (gain * (raw - zero_raw) - load).abs();
-    Ok((zero_raw, gain, pairs.iter().map(deviation).fold(0.0, f64::max)))
-}
-
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "these numbers are exact")]
 mod tests {
@@ -189,12 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn loads_give_zero_and_gain() {
-        let pairs = [[102.0, 0.0], [202.0, 10.0], [302.0, 20.0], [2.0, -10.0]];
-        let (zero_raw, gain, deviation) = gain_from_loads(&pairs).unwrap();
-        assert!((zero_raw - 102.0).abs() < 1e-9 && (gain - 0.1).abs() < 1e-12);
-        assert!(deviation < 1e-9);
-        assert!(gain_from_loads(&[[1.0, 5.0], [2.0, 5.0]]).is_err());
+    fn a_zero_is_the_mean_of_ten_readings_at_least() {
         let (mean, deviation) = zero_from_readings(&[1.0, 3.0].repeat(5)).unwrap();
         assert!((mean - 2.0).abs() < 1e-12 && (deviation - 1.054_092_6).abs() < 1e-6);
         assert!(zero_from_readings(&[1.0; 9]).is_err());

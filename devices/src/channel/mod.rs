@@ -7,7 +7,7 @@ mod tally;
 
 use serde::{Deserialize, Serialize};
 
-pub use calibration::{Calibration, CalibrationError, Curve, gain_from_loads, zero_from_readings};
+pub use calibration::{Calibration, CalibrationError, Curve, zero_from_readings};
 pub use counts::{Brought, Counted, Counts};
 pub use lag::{Lag, LagKind};
 pub use tally::Tally;

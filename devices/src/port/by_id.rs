@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 /// Where the system keeps the stable names of serial ports.
 pub const BY_ID_FOLDER: &str = "/dev/serial/by-id";
 
+/// Where the system keeps the settings of USB adapters.
+pub const USB_SERIAL_FOLDER: &str = "/sys/bus/usb-serial/devices";
+
 /// A port of this machine.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct FoundPort {
@@ -59,10 +62,9 @@ fn is_serial(path: &Path) -> bool {
 }
 
 /// How long the adapter behind a port may hold bytes back [s]; an FTDI is set to 1 ms when allowed.
-pub fn adapter_latency_s(path: &Path) -> Option<f64> {
-    let device = fs::canonicalize(path).ok()?;
-    let name = device.file_name()?.to_string_lossy();
-    let timer = PathBuf::from(format!("/sys/bus/usb-serial/devices/{name}/latency_timer"));
+pub fn adapter_latency_s(port: &Path, usb_serial_folder: &Path) -> Option<f64> {
+    let device = fs::canonicalize(port).ok()?;
+    let timer = usb_serial_folder.join(device.file_name()?).join("latency_timer");
     let read = || fs::read_to_string(&timer).ok()?.trim().parse::<f64>().ok();
     let before_ms = read()?;
     // The factory's 16 ms would cost a sixtieth of a second of knowledge about every sample.
@@ -97,5 +99,22 @@ mod tests {
         let found = found_ports(&by_id);
         let device = fs::canonicalize(&second).unwrap();
         assert!(found.contains(&FoundPort { path: name, device }), "{found:?}");
+    }
+
+    #[test]
+    fn the_timer_of_an_adapter_is_found_behind_the_ports_stable_name_and_set_to_a_millisecond() {
+        let folder = tempfile::tempdir().unwrap();
+        let (adapters, port) = (folder.path().join("devices"), folder.path().join("ttyUSB3"));
+        let timer = adapters.join("ttyUSB3/latency_timer");
+        fs::create_dir_all(timer.parent().unwrap()).unwrap();
+        fs::write(&timer, "16\n").unwrap();
+        fs::write(&port, "").unwrap();
+        let name = folder.path().join("usb-FTDI_A1-if00-port0");
+        symlink("ttyUSB3", &name).unwrap();
+        assert_eq!(adapter_latency_s(&name, &adapters), Some(1e-3));
+        assert_eq!(fs::read_to_string(&timer).unwrap(), "1");
+        // Other adapters have no such timer.
+        fs::remove_file(&timer).unwrap();
+        assert_eq!(adapter_latency_s(&name, &adapters), None);
     }
 }

@@ -10,7 +10,9 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-pub use by_id::{BY_ID_FOLDER, FoundPort, adapter_latency_s, found_ports, stable_name};
+pub use by_id::{
+    BY_ID_FOLDER, FoundPort, USB_SERIAL_FOLDER, adapter_latency_s, found_ports, stable_name,
+};
 pub use link::{LinkEvent, LinkOptions};
 pub use reader::{LinkReader, LinkThread, Outlet};
 

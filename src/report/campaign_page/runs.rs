@@ -19,7 +19,7 @@ pub(super) fn part(page: &CampaignPage) -> Option<Markup> {
             let at = page.field_units(run).at_comparison();
             let rmse = identification.resimulation.rmse_rad.to_degrees();
             html! {
-                td { a href=(run_link(&run.id)) { (run.id) } }
+                td.name { a href=(run_link(&run.id)) { (run.id) } }
                 td.number { (run.run.kind.name()) }
                 td { (run.condition) }
                 (number_cell(&fixed(run.froude, 3)))
