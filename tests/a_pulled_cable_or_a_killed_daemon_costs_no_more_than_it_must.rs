@@ -47,6 +47,26 @@ fn starts(records: &[Record]) -> Vec<&RunStart> {
     starts.collect()
 }
 
+/// Whatever began like a run is told to have ended, once, as a run or as none, with a reason.
+fn assert_each_ends_once(records: &[Record]) {
+    let mut open: Vec<&str> = Vec::new();
+    for record in records {
+        match record {
+            Record::RunStart(start) => {
+                assert!(!open.contains(&&*start.run), "{start:?}");
+                open.push(&start.run);
+            }
+            Record::RunStop(stop) => {
+                let begun = open.iter().position(|run| *run == stop.run);
+                open.remove(begun.unwrap_or_else(|| panic!("it never began: {stop:?}")));
+                assert!(!stop.reason.is_empty() && stop.end_s >= stop.start_s, "{stop:?}");
+            }
+            _ => {}
+        }
+    }
+    assert!(open.is_empty(), "no end is told of {open:?}");
+}
+
 #[test]
 #[expect(clippy::disallowed_methods, reason = "how fast a loss is told is what it is about")]
 fn a_cable_pulled_during_a_decay_ends_the_run_there_and_one_put_back_is_taken_up_again() {
@@ -86,6 +106,7 @@ fn a_cable_pulled_during_a_decay_ends_the_run_there_and_one_put_back_is_taken_up
     assert_eq!(status.code(), Some(0), "{said}");
 
     let records = records(&tank);
+    assert_each_ends_once(&records);
     let gaps = gaps(&records);
     let roll = gaps.iter().find(|gap| gap.channel == "roll").expect("a gap was recorded");
     assert!(roll.reason.contains("link was lost"), "{roll:?}");
@@ -124,6 +145,7 @@ fn samples_that_fail_within_a_run_are_masked_and_counted() {
     let (status, said) = daemon.terminate();
     assert_eq!(status.code(), Some(0), "{said}");
     let records = records(&tank);
+    assert_each_ends_once(&records);
     let stops = stops(&records);
     let roll = stops[0].counts.iter().find(|counts| counts.channel == "roll").expect("roll");
     assert!(roll.lost >= 5 && roll.repeated == 3 && roll.damaged >= 1, "{roll:?}");
@@ -156,6 +178,7 @@ fn an_over_driven_instrument_is_masked_and_counted_and_ends_the_run() {
     let (status, said) = daemon.terminate();
     assert_eq!(status.code(), Some(0), "{said}");
     let records = records(&tank);
+    assert_each_ends_once(&records);
     let n_over_range: u64 = records
         .iter()
         .map(|record| match record {
@@ -206,6 +229,7 @@ fn a_killed_daemon_leaves_what_it_recorded_and_the_next_keeps_the_runs() {
     let recovered = Recorded::open(&files[0]).expect("it is whole");
     assert_eq!(recovered.metadata()["exit_status"], "recovered");
     let records = records_of(&files[0]);
+    assert_each_ends_once(&records);
     let (starts, stops) = (starts(&records), stops(&records));
     let cut = stops.last().expect("the run that was cut");
     assert_eq!((&cut.run, cut.exit_status), (&starts[starts.len() - 1].run, ExitStatus::Recovered));
