@@ -39,7 +39,7 @@ const OWNERS: [(&str, &[&str]); 27] = [
     ("maud", &["src/report"]),
     ("plotters", &["src/report"]),
     ("rusqlite", &["src/catalogue"]),
-    ("faer", &["src/inverse", "src/reference"]),
+    ("faer", &["src/inverse", "src/reference", "src/campaign/known_loads.rs"]),
     ("statrs", &["src/inverse", "src/uncertainty", "src/bench"]),
     ("rand", &["src/inverse", "src/tank", "src/reference", "src/bench"]),
     ("rand_chacha", &["src/inverse", "src/tank", "src/reference", "src/bench"]),

@@ -28,8 +28,8 @@ fn entered(tank: &LiveTank, arguments: &[&str], lines: &str) -> (Option<i32>, St
     (ended.status.code(), text(&ended.stdout), text(&ended.stderr))
 }
 
-/// Calibrates the force cell with loads [N] and the counts that each adds to its reading, each on the
-/// cell before it is entered; the line for each load, and what is said at the end.
+/// Calibrates the force cell with loads [N] and the counts that each adds to its reading, each on
+/// the cell before it is entered; the line for each load, and what is said at the end.
 fn loaded(tank: &LiveTank, more: &[&str], loads: &[(i64, i64)]) -> (Vec<String>, Vec<String>) {
     let mut child = Command::new(env!("CARGO_BIN_EXE_rolltank"))
         .args(["calibrate", ".", "--channel", "force", "--by", "B. Olsen"])

@@ -13,6 +13,9 @@ use clap::ValueEnum;
 use super::Failure;
 use crate::campaign::{self, Campaign, TakenCalibration};
 
+/// The first readings after an opening may be of what was on the instrument before.
+const SETTLING_NS: u64 = 200_000_000;
+
 /// A channel as it is named on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum ChannelName {
@@ -53,11 +56,19 @@ pub(super) fn readings(
     let clock: Arc<dyn Clock> = Arc::new(WallClock::start());
     let failed = |source| Failure::Instrument { source };
     let mut instrument = Instrument::start(device, Arc::clone(&clock)).map_err(failed)?;
-    let until_ns = clock.now_ns() + (seconds * 1e9) as u64;
+    let until_ns = clock.now_ns() + SETTLING_NS + (seconds * 1e9) as u64;
     let mut raw = vec![Vec::new(); quantities.len()];
     let (mut events, mut trouble) = (Vec::new(), None);
+    let mut settled_ns = None;
     while clock.now_ns() < until_ns {
         instrument.next(Duration::from_millis(20), &mut events);
+        let now_ns = clock.now_ns();
+        if events.iter().any(|event| matches!(event, InstrumentEvent::Sample(_))) {
+            settled_ns.get_or_insert(now_ns + SETTLING_NS);
+        }
+        if settled_ns.is_none_or(|settled_ns| now_ns < settled_ns) {
+            events.retain(|event| !matches!(event, InstrumentEvent::Sample(_)));
+        }
         for event in events.drain(..) {
             match event {
                 InstrumentEvent::Sample(measured) if measured.quality.is_usable() => {

@@ -221,9 +221,10 @@ async function rejectAndUndo(page, second) {
 
 async function cableIsPulled(page, second) {
   await show(page, "now");
-  assert.equal(await alarms(page).count(), 0);
+  // An instrument whose thread waits for a processor is silent for a while, and that is told too.
+  await until("nothing is alarming", async () => await alarms(page).count() === 0);
   const seen = page.evaluate(async () => {
-    while (!document.querySelector("#alarms .alarm")) {
+    while (!document.querySelector("#alarms")?.textContent.includes("potentiometer")) {
       await new Promise((resolve) => setTimeout(resolve, 5));
     }
     return performance.timeOrigin + performance.now();
