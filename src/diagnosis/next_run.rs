@@ -169,7 +169,13 @@ fn parting(
         Some(wanted) => (wanted, WORTH_A_RUN_OF_SHAPE),
         None => (DECIDES, WORTH_A_RUN),
     };
+    // A rival that each run has of its own has as many starts in two runs as it has pairs of them:
+    // to foretell every couple would take hours.
+    let is_of_each_run = |rival: &Rival| {
+        rival.settled.fit.extensions.last().is_some_and(|e| e.effect.scope.is_of_each_run())
+    };
     if log < enough
+        && !rivals_so_far.iter().any(is_of_each_run)
         && let Some((both, couple)) = best_of(couples(&plans, set[0]))
         && both > log + worth
     {
