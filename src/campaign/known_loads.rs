@@ -43,7 +43,10 @@ pub struct FromLoads {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LoadsError {
     /// Too few of them differ.
-    #[error("different loads: {got}, this curve needs {needed} at least")]
+    #[error(
+        "different loads: {got}, this curve needs {needed} at least\nhint: apply more loads, or \
+         take a simpler curve"
+    )]
     Few {
         /// How many differ.
         got: usize,
