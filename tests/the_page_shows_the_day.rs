@@ -10,7 +10,7 @@ use super::live_tank::{Daemon, LiveTank};
 #[expect(clippy::disallowed_methods, reason = "the browser tells when it saw by the same clock")]
 fn a_day_is_seen_as_it_happens_judged_and_found_again_after_a_restart() {
     let tank = LiveTank::at_speed(8.0);
-    let plan = "[[plan]]\ncondition = \"bare hull\"\nfroude = 0\nkind = \"decay\"\nrepeats = 9\n";
+    let plan = "[[plan]]\ncondition = \"bare hull\"\nfroude = 0\nkind = \"decay\"\nrepeats = 999\n";
     tank.edit("[live]", &format!("{plan}[live]"));
     let mut daemon = Daemon::start(&tank, &[]);
     let address = daemon.address();
