@@ -60,7 +60,7 @@ fn what_a_decay_says_is_told_before_its_end_is_known_and_replaced_by_what_it_say
     assert!(state.contains("\"free decay, Fr 0.000,"), "{state}");
     assert!(served.status == 200 && served.body.contains("Provisional"), "{served:?}");
 
-    // What is told goes on with the run; how soon after its last sample, `rolltank bench live` says.
+    // What is told follows the run; how soon after its last sample, `rolltank bench live` says.
     let [begun_s, ends_s] = ["start_s", "end_s"].map(|key| run[key].as_f64().expect(key));
     let told_to_s = || {
         let told: serde_json::Value = serde_json::from_str(&tank.text(numbers)).unwrap_or_default();

@@ -217,17 +217,23 @@ fn waves_from_the_walls_leave_no_other_name_beside_them() {
 }
 
 #[test]
-fn a_run_that_may_not_decide_is_told_as_such() {
-    // A skew of a millisecond differs from a lag as small at no frequency that the rod reaches.
-    let asked = |set, id, seed| {
-        let (_, verdict) = diagnosed(set, &[id], 1.0, seed);
+fn a_run_that_may_not_decide_is_told_as_such_and_none_is_asked_for_in_vain() {
+    let asked = |set, id, size, seed| {
+        let (_, verdict) = diagnosed(set, &[id], size, seed);
         let next = verdict.json["next_run"].clone();
-        (next["decides"].as_bool().expect("it is told"), next["why"].to_string())
+        let parts = next["parts"].as_array().expect("it is told").len();
+        (next["decides"].as_bool().expect("it is told"), parts, next["why"].to_string())
     };
-    let (decides, why) = asked(RunSet::Forced, "instrument.channel_skew", 851);
-    assert!(!decides && why.contains("which may not decide"), "{why}");
-    let (decides, why) = asked(RunSet::Rest, "restoring.cubic", drawn_seed("cubic restoring"));
-    assert!(decides && !why.contains("may not"), "{why}");
+    // A short skew differs from a lag as short at no frequency that the rod reaches.
+    let (decides, parts, why) = asked(RunSet::Forced, "instrument.channel_skew", 2.0, 871);
+    assert!(!decides && parts == 0 && why.contains("no run that this tank allows"), "{why}");
+    assert!(why.contains("a tap on the model"), "{why}");
+    // What parts a drift of the clock from either of these does not part them.
+    let (decides, parts, why) = asked(RunSet::Forced, "instrument.channel_skew", 1.0, 851);
+    assert!(!decides && parts > 2 && why.contains("which may not decide"), "{why}");
+    let seed = drawn_seed("cubic restoring");
+    let (decides, parts, why) = asked(RunSet::Rest, "restoring.cubic", 1.0, seed);
+    assert!(decides && parts > 1 && !why.contains("may not"), "{why}");
 }
 
 #[test]

@@ -11,8 +11,8 @@ use super::plan::Plan;
 use super::run_fit::{ChannelNoise, RunState, predict, summarise};
 use super::settle::Settled;
 use super::solve::Joint;
-use super::survey::{Fit, Survey};
-use crate::model::Scope;
+use super::survey::{Fit, Survey, n_values};
+use crate::model::{N_BASE, Scope};
 
 /// Times that a rival is linearised anew on runs that it has not seen.
 const RELINEARISED: usize = 4;
@@ -35,13 +35,55 @@ impl Rival {
     }
 }
 
-/// A survey with runs that were not made.
+/// What a run that was not made is expected to say.
+pub(super) struct Foretold {
+    /// Half of the misfit that the rival would keep, or the logarithm by which its shape is
+    /// narrowed.
+    pub(super) log: f64,
+    /// Which of the shapes that the rival may start from in this run comes nearest.
+    nearest: usize,
+}
+
+/// A run that the favourite makes, and where a rival starts in it.
+struct Made {
+    run: Observation,
+    guess: RunState,
+    noise: ChannelNoise,
+}
+
+impl Made {
+    fn new(
+        survey: &Survey,
+        favourite: &Fit,
+        rival: &Fit,
+        (plan, span_s): (Plan, f64),
+        to_come: [Option<(f64, f64)>; 2],
+    ) -> Self {
+        let (mut run, state, noise) = plan.observed(survey, favourite, span_s, to_come);
+        let truth = with_run(survey, favourite, &run, state.clone());
+        let readings = predict(&run, &state, &truth.terms(survey.runs.len()));
+        let (roll, moment) = readings.split_at(run.roll_time_s.len());
+        (run.roll_rad, run.moment_n_m) = (roll.to_vec(), moment.to_vec());
+        let law = rival.laws[survey.condition_of[0]].at(plan.froude);
+        let mut guess = state;
+        (guess.base.natural_rad_s, guess.base.b1_per_s, guess.base.b3_s) = (law[0], law[1], law[2]);
+        guess.base.log_scale = rival.log_scale;
+        Self { run, guess, noise }
+    }
+
+    /// The rival's fit with this run, from each of the shapes that it may start from there.
+    fn starts(&self, survey: &Survey, rival: &Fit) -> Vec<Fit> {
+        with_own_set(with_run(survey, rival, &self.run, self.guess.clone()), &self.run)
+    }
+}
+
+/// A survey with runs that were not made; what they cost is counted with the others.
 pub(super) fn grown_survey(survey: &Survey, runs: Vec<Observation>) -> Survey {
     let mut grown = Survey {
         runs: survey.runs.clone(),
         conditions: survey.conditions.clone(),
         condition_of: survey.condition_of.clone(),
-        spent: Arc::default(),
+        spent: Arc::clone(&survey.spent),
         until: AtomicU64::new(u64::MAX),
     };
     for run in runs {
@@ -86,62 +128,77 @@ fn with_own_set(fit: Fit, run: &Observation) -> Vec<Fit> {
         }
         fit
     };
-    (effect.nodes)(&run.at).into_iter().map(started).collect()
+    let nodes = (effect.nodes)(&run.at);
+    if nodes.is_empty() { vec![fit] } else { nodes.into_iter().map(started).collect() }
 }
 
-/// Half of the misfit that a rival would keep on runs that the favourite made, or the logarithm
-/// by which the runs narrow the rival's shape.
-pub(super) fn expected_log_bayes_factor(
+/// What a run is expected to say between a favourite, which makes it, and a rival.
+pub(super) fn foretold(
     survey: &Survey,
-    (favourite_id, favourite): (&str, &Fit),
+    (id, favourite): (&str, &Fit),
     rival: &Rival,
-    plans: &[(Plan, f64)],
+    plan: (Plan, f64),
+    to_come: [Option<(f64, f64)>; 2],
+) -> Foretold {
+    let made = Made::new(survey, favourite, &rival.settled.fit, plan, to_come);
+    let starts = made.starts(survey, &rival.settled.fit);
+    let grown = grown_survey(survey, vec![made.run]);
+    let answer =
+        |k: usize, rounds| answered(survey, &grown, rival, &starts[k], &[made.noise], rounds);
+    // Of the shapes the nearest is found in one round, as a score finds it.
+    let left: Vec<f64> = match starts.len() {
+        1 => vec![0.0],
+        n => (0..n).map(|k| answer(k, 1).least_misfit()).collect(),
+    };
+    let nearest = (0..left.len()).min_by(|a, b| left[*a].total_cmp(&left[*b])).unwrap_or(0);
+    Foretold { log: said(survey, id, rival, &answer(nearest, RELINEARISED)), nearest }
+}
+
+/// The same of two runs together: a rival that each run has of its own starts from the shape that
+/// came nearest in each alone, for of couples of shapes there are too many to try.
+pub(super) fn foretold_together(
+    survey: &Survey,
+    (id, favourite): (&str, &Fit),
+    rival: &Rival,
+    plans: [(Plan, f64); 2],
+    alone: [&Foretold; 2],
     to_come: [Option<(f64, f64)>; 2],
 ) -> f64 {
-    let known = &rival.settled.fit;
-    let (mut runs, mut noises) = (Vec::new(), Vec::new());
-    let mut starts = vec![known.clone()];
-    for (plan, span_s) in plans {
-        let (mut run, state, noise) = plan.observed(survey, favourite, *span_s, to_come);
-        let truth = with_run(survey, favourite, &run, state.clone());
-        let readings = predict(&run, &state, &truth.terms(survey.runs.len()));
-        let (roll, moment) = readings.split_at(run.roll_time_s.len());
-        (run.roll_rad, run.moment_n_m) = (roll.to_vec(), moment.to_vec());
-        let law = known.laws[survey.condition_of[0]].at(plan.froude);
-        let mut guess = state;
-        (guess.base.natural_rad_s, guess.base.b1_per_s, guess.base.b3_s) = (law[0], law[1], law[2]);
-        guess.base.log_scale = known.log_scale;
-        let with_it = |fit: &Fit| with_own_set(with_run(survey, fit, &run, guess.clone()), &run);
-        starts = starts.iter().flat_map(with_it).collect();
-        runs.push(run);
-        noises.push(noise);
+    let mut start = rival.settled.fit.clone();
+    let made = plans.map(|plan| Made::new(survey, favourite, &start, plan, to_come));
+    for (made, alone) in made.iter().zip(alone) {
+        start = made.starts(survey, &start).swap_remove(alone.nearest);
     }
-    let grown = grown_survey(survey, runs);
-    let best = starts
-        .into_iter()
-        .map(|start| answered(survey, &grown, rival, start, &noises))
-        .min_by(|a, b| a.least_misfit().total_cmp(&b.least_misfit()));
-    let Some(best) = best else { return 0.0 };
-    if let Some((_, shapes)) = open_shapes(survey, known, favourite_id) {
+    let noises = [made[0].noise, made[1].noise];
+    let grown = grown_survey(survey, made.map(|made| made.run).to_vec());
+    said(survey, id, rival, &answered(survey, &grown, rival, &start, &noises, RELINEARISED))
+}
+
+/// Half of the misfit that a rival keeps on added runs, or the logarithm by which they narrow its
+/// shape.
+fn said(survey: &Survey, favourite: &str, rival: &Rival, answer: &Added) -> f64 {
+    if let Some((_, shapes)) = open_shapes(survey, &rival.settled.fit, favourite) {
         // Where the rival is the favourite with its shape left open, nothing but that shape parts
         // them.
-        let (before, after) = (&rival.settled.solution.covariance, best.eliminated.covariance());
+        let (before, after) = (&rival.settled.solution.covariance, answer.eliminated.covariance());
         let gains = shapes.iter().map(|(_, c)| 0.5 * (before[*c][*c] / after[*c][*c]).ln());
         return gains.fold(f64::INFINITY, f64::min);
     }
-    0.5 * (best.least_misfit() - rival.least_misfit).max(0.0)
+    0.5 * (answer.least_misfit() - rival.least_misfit).max(0.0)
 }
 
-/// The rival's answer to the added runs with all its numbers, as far as the runs so far let it.
+/// The rival's answer to the added runs with all its numbers, as far as the runs so far let it,
+/// linearised anew so many times.
 fn answered(
     survey: &Survey,
     grown: &Survey,
     rival: &Rival,
-    start: Fit,
+    start: &Fit,
     noises: &[ChannelNoise],
+    rounds: usize,
 ) -> Added {
     let (known, scatter) = (&rival.settled.fit, &rival.settled.solution.scatter);
-    let mut fit = start;
+    let mut fit = start.clone();
     // Where the added runs are linearised; the others stay where they were.
     let mut extensions = fit.extensions.clone();
     let mut round = 0;
@@ -153,6 +210,7 @@ fn answered(
             .map(|(r, noise)| {
                 let (now, then) = (there.terms(r), fit.terms(r));
                 let state = &fit.states[r];
+                grown.spend(r, &now, state.own.len() + N_BASE + n_values(&now));
                 let mut summary = summarise(&grown.runs[r], state, &now, &[], noise);
                 let mut moved_by = vec![state.base.log_scale - fit.log_scale];
                 for (now, then) in now.iter().zip(&then) {
@@ -163,7 +221,7 @@ fn answered(
             })
             .collect();
         let added = Added::new((known, &rival.products), grown, &fit, &summaries, scatter);
-        if round == RELINEARISED {
+        if round == rounds {
             return added;
         }
         let (moved, states) = added.moved(grown, &fit, &summaries);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::added::Added;
 use super::alike::{narrowing_wanted, open_shapes};
 use super::cores;
-use super::foretold::{Rival, expected_log_bayes_factor, grown_survey, with_run};
+use super::foretold::{Foretold, Rival, foretold, foretold_together, grown_survey, with_run};
 use super::growth::Grown;
 use super::observation::Observation;
 use super::plan::{Plan, SAMPLE_S, plans};
@@ -54,6 +54,12 @@ pub struct NextRun {
 /// explains.
 const ONE_IN_DECAYS: [[&str; 2]; 2] =
     [["restoring.cubic", "inertia.amplitude"], ["restoring.speed", "inertia.speed"]];
+
+/// What parts causes that no roll of the model does (EFFECTS.md, section 6).
+const BESIDE_THE_TANK: [([&str; 2], &str); 1] = [(
+    ["instrument.channel_skew", "instrument.roll_lag"],
+    "a tap on the model that both channels record",
+)];
 
 fn is_one_in_decays(a: &str, b: &str) -> bool {
     ONE_IN_DECAYS.iter().any(|pair| *pair == [a, b] || *pair == [b, a])
@@ -122,7 +128,9 @@ pub(super) fn next_run(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<Ne
                 .to_owned(),
         });
     }
-    informing(survey, grown, tank)
+    let mut next = informing(survey, grown, tank)?;
+    next.why = format!("no cause is undecided; {}", next.why);
+    Some(next)
 }
 
 fn parting(
@@ -145,41 +153,40 @@ fn parting(
     let only_forced = rivals.iter().any(|rival| is_one_in_decays(favourite, rival));
     let mut plans = plans(tank, survey);
     plans.retain(|(plan, _)| !only_forced || plan.kind == RunKind::Forced);
-    let best_of = |sets: Vec<Vec<(Plan, f64)>>| {
-        let favourite = (favourite, &grown.last.fit);
-        // The rival that is hardest to part decides.
-        let hardest = cores::each(sets.len(), |k| {
-            rivals_so_far
-                .iter()
-                .map(|rival| expected_log_bayes_factor(survey, favourite, rival, &sets[k], noise))
-                .fold(f64::INFINITY, f64::min)
-        });
-        let mut best: Option<(f64, Vec<(Plan, f64)>)> = None;
-        for (least, set) in hardest.into_iter().zip(sets) {
-            if least.is_finite() && best.as_ref().is_none_or(|(most, _)| least > 1.05 * most) {
-                best = Some((least, set));
-            }
-        }
-        best
-    };
-    let (mut log, mut set) = best_of(plans.iter().map(|plan| vec![*plan]).collect())?;
+    let favourite_fit = (favourite, &grown.last.fit);
+    let alone = cores::each(plans.len(), |k| -> Vec<Foretold> {
+        let of_rival = |rival| foretold(survey, favourite_fit, rival, plans[k], noise);
+        rivals_so_far.iter().map(of_rival).collect()
+    });
+    tracing::debug!(spent = survey.n_spent(), runs = plans.len(), "runs foretold alone");
+    let (mut log, best) = most(alone.iter().map(|told| hardest(told)))?;
+    let mut set = vec![plans[best]];
     let wanted = |rival: &Rival| narrowing_wanted(survey, &rival.settled, favourite);
     let narrowing = rivals_so_far.iter().filter_map(wanted).reduce(f64::max);
     let (enough, worth) = match narrowing {
         Some(wanted) => (wanted, WORTH_A_RUN_OF_SHAPE),
         None => (DECIDES, WORTH_A_RUN),
     };
-    // A rival that each run has of its own has as many starts in two runs as it has pairs of them:
-    // to foretell every couple would take hours.
-    let is_of_each_run = |rival: &Rival| {
-        rival.settled.fit.extensions.last().is_some_and(|e| e.effect.scope.is_of_each_run())
-    };
-    if log < enough
-        && !rivals_so_far.iter().any(is_of_each_run)
-        && let Some((both, couple)) = best_of(couples(&plans, set[0]))
-        && both > log + worth
-    {
-        (log, set) = (both, couple);
+    if log < enough && !survey.is_spent() {
+        let couples = couples(&plans, best);
+        let logs = cores::each(couples.len(), |k| {
+            let [a, b] = couples[k];
+            let each = rivals_so_far.iter().zip(alone[a].iter().zip(&alone[b]));
+            let logs = each.map(|(rival, (told_a, told_b))| {
+                let (plans, told) = ([plans[a], plans[b]], [told_a, told_b]);
+                foretold_together(survey, favourite_fit, rival, plans, told, noise)
+            });
+            logs.fold(f64::INFINITY, f64::min)
+        });
+        tracing::debug!(spent = survey.n_spent(), couples = logs.len(), "couples foretold");
+        if let Some((both, k)) = most(logs.into_iter())
+            && both > log + worth
+        {
+            (log, set) = (both, couples[k].map(|one| plans[one]).to_vec());
+        }
+    }
+    if narrowing.is_none() && log < WORTH_A_RUN {
+        return in_vain(survey, grown, tank, favourite, rivals);
     }
     let mut decides = log >= enough;
     if narrowing.is_none() {
@@ -212,6 +219,28 @@ fn parting(
     })
 }
 
+/// What is worth a run where none that the tank allows parts the causes.
+fn in_vain(
+    survey: &Survey,
+    grown: &Grown,
+    tank: &Tank,
+    favourite: &'static str,
+    rivals: &[&'static str],
+) -> Option<NextRun> {
+    let mut next = informing(survey, grown, tank)?;
+    next.decides = false;
+    let is_between =
+        |pair: &[&str]| pair.contains(&favourite) && rivals.len() == 1 && pair.contains(&rivals[0]);
+    let otherwise = BESIDE_THE_TANK.iter().find(|(pair, _)| is_between(pair));
+    let otherwise = otherwise.map(|(_, what)| format!("; {what} may")).unwrap_or_default();
+    let names = rivals.join(", ");
+    next.why = format!(
+        "no run that this tank allows is expected to part {favourite} from {names}{otherwise}; {}",
+        next.why
+    );
+    Some(next)
+}
+
 /// The least that runs are expected to say between two rivals of a favourite, were one of them the
 /// cause; infinite where there is one rival, or nothing but a shape parts them.
 fn among(
@@ -232,20 +261,41 @@ fn among(
     let logs = pairs.filter_map(|(cause, other)| {
         let id = id(cause).filter(|id| !is_open(other, id))?;
         let cause = (id, &cause.settled.fit);
-        Some(expected_log_bayes_factor(survey, cause, other, set, noise))
+        let alone: Vec<Foretold> =
+            set.iter().map(|plan| foretold(survey, cause, other, *plan, noise)).collect();
+        match (set, alone.as_slice()) {
+            ([one, two], [of_one, of_two]) => {
+                let (plans, told) = ([*one, *two], [of_one, of_two]);
+                Some(foretold_together(survey, cause, other, plans, told, noise))
+            }
+            _ => Some(hardest(&alone)),
+        }
     });
     logs.fold(f64::INFINITY, f64::min)
 }
 
-/// Two runs that may decide together: the rod at two speeds, or any run beside the best.
-fn couples(plans: &[(Plan, f64)], best: (Plan, f64)) -> Vec<Vec<(Plan, f64)>> {
-    let mut all: Vec<_> = plans.iter().map(|other| vec![best, *other]).collect();
-    for (k, one) in plans.iter().enumerate() {
-        let at_other_speed = plans[k + 1..].iter().filter(|(other, _)| {
-            let is_like = Plan { froude: one.0.froude, ..*other } == one.0;
-            one.0.kind == RunKind::Forced && is_like
-        });
-        all.extend(at_other_speed.map(|other| vec![*one, *other]));
+/// What runs say of the rival that is hardest to part, which decides.
+fn hardest(told: &[Foretold]) -> f64 {
+    told.iter().map(|told| told.log).fold(f64::INFINITY, f64::min)
+}
+
+/// The place of what says most: of those that say much the same, the first.
+fn most(logs: impl Iterator<Item = f64>) -> Option<(f64, usize)> {
+    let finite = logs.enumerate().filter(|(_, log)| log.is_finite());
+    finite.fold(None, |best, (k, log)| match best {
+        Some((most, _)) if log <= 1.05 * most => best,
+        _ => Some((log, k)),
+    })
+}
+
+/// Places of two runs that may decide together: the rod at two speeds, or any run beside the best.
+fn couples(plans: &[(Plan, f64)], best: usize) -> Vec<[usize; 2]> {
+    let mut all: Vec<_> = (0..plans.len()).map(|other| [best, other]).collect();
+    for (k, (one, _)) in plans.iter().enumerate() {
+        let is_like = |(other, _): &(Plan, f64)| Plan { froude: one.froude, ..*other } == *one;
+        let others = k + 1..plans.len();
+        let at_other_speed = others.filter(|j| one.kind == RunKind::Forced && is_like(&plans[*j]));
+        all.extend(at_other_speed.map(|other| [k, other]));
     }
     all
 }
@@ -281,13 +331,8 @@ fn informing(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<NextRun> {
         let solved = Added::new((&last.fit, &known), &grown, &fit, &[summary], &scatter);
         now - volume(&solved.eliminated.covariance())
     });
-    let mut best: Option<(f64, Plan)> = None;
-    for (gain, planned) in gains.into_iter().zip(plans) {
-        if best.is_none_or(|(most, _)| gain > 1.05 * most) {
-            best = Some((gain, planned.0));
-        }
-    }
-    let (log, plan) = best?;
+    let (log, best) = most(gains.into_iter())?;
+    let plan = plans[best].0;
     let w = last.fit.laws[survey.condition_of[0]].numbers[0];
     Some(NextRun {
         run: plan.told(w),
@@ -295,6 +340,6 @@ fn informing(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<NextRun> {
         parts: Vec::new(),
         expected_log_bayes_factor: log,
         decides: true,
-        why: format!("no cause is undecided; {} narrows b0 and kappa most", plan.words(w)),
+        why: format!("{} narrows b0 and kappa most", plan.words(w)),
     })
 }

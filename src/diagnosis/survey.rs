@@ -73,6 +73,11 @@ pub(super) struct Fit {
     pub(super) states: Vec<RunState>,
 }
 
+/// How many numbers effects have in one run.
+pub(super) fn n_values(terms: &[Term]) -> usize {
+    terms.iter().map(|term| term.values.len()).sum()
+}
+
 impl Fit {
     /// The effects as they act in one run.
     pub(super) fn terms(&self, run: usize) -> Vec<Term> {
@@ -274,7 +279,7 @@ impl Survey {
     }
 
     /// Counts a simulation of a run with so many changes.
-    fn spend(&self, run: usize, terms: &[Term], n_changes: usize) {
+    pub(super) fn spend(&self, run: usize, terms: &[Term], n_changes: usize) {
         let cost = |term: &Term| match term.effect.acts {
             Acts::Echo(_) => COST_OF_ECHO,
             Acts::Lagging(_) => COST_OF_LAG,
@@ -296,10 +301,8 @@ impl Survey {
     ) -> Vec<Summary> {
         self.each_run(&|r| {
             let (terms, candidates) = (fit.terms(r), candidates(r));
-            let n_changes =
-                |terms: &[Term]| terms.iter().map(|term| term.values.len()).sum::<usize>();
-            let n_own = fit.states[r].own.len() + N_BASE + n_changes(&terms);
-            self.spend(r, &terms, n_own + n_changes(&candidates));
+            let n_own = fit.states[r].own.len() + N_BASE + n_values(&terms);
+            self.spend(r, &terms, n_own + n_values(&candidates));
             summarise(&self.runs[r], &fit.states[r], &terms, &candidates, &noise[r])
         })
     }
