@@ -14,6 +14,8 @@ pub(super) struct Added {
     layout: Layout,
     marginals: Vec<Marginal>,
     steps: Vec<f64>,
+    /// Logarithm of the precision of the priors of sets that the added runs have of their own.
+    log_prior: f64,
 }
 
 impl Added {
@@ -27,7 +29,7 @@ impl Added {
         scatter: &Scatter,
     ) -> Self {
         let layout = Layout::new(survey, fit);
-        let mut all = widened(others, survey, known, fit);
+        let (mut all, log_prior) = widened(others, survey, known, fit);
         let first = survey.runs.len() - summaries.len();
         let marginals: Vec<Marginal> = summaries
             .iter()
@@ -41,12 +43,20 @@ impl Added {
             .collect();
         let eliminated = all.eliminate(layout.n);
         let steps = eliminated.back(&[]);
-        Self { eliminated, layout, marginals, steps }
+        Self { eliminated, layout, marginals, steps, log_prior }
     }
 
     /// Least misfit that the linearised model reaches.
     pub(super) fn least_misfit(&self) -> f64 {
         self.eliminated.rest.at(0, 0)
+    }
+
+    /// Logarithm of the evidence, but for the Occam factors of the other runs, of the added runs'
+    /// states and of the numbers that all have in common.
+    pub(super) fn log_evidence(&self) -> f64 {
+        let of_scatter: f64 = self.marginals.iter().map(|marginal| marginal.log_occam).sum();
+        of_scatter + 0.5 * self.log_prior
+            - 0.5 * (self.least_misfit() + self.eliminated.log_determinant)
     }
 
     /// The effects, and the states of the added runs, after the step.
@@ -70,8 +80,8 @@ impl Added {
 }
 
 /// Products under a fit as those of one with more sets of parameters, of which only the priors
-/// are known.
-fn widened(others: &Products, survey: &Survey, known: &Fit, fit: &Fit) -> Products {
+/// are known, with the logarithm of the precision of these.
+fn widened(others: &Products, survey: &Survey, known: &Fit, fit: &Fit) -> (Products, f64) {
     let (before, after) = (Layout::new(survey, known), Layout::new(survey, fit));
     let mut places: Vec<Place> = (0..=before.scale()).map(|i| Place::new(i, i)).collect();
     let mut priors = Vec::new();
@@ -90,11 +100,13 @@ fn widened(others: &Products, survey: &Survey, known: &Fit, fit: &Fit) -> Produc
     places.push(Place::new(before.n, after.n));
     let mut all = Products::zero(after.n + 1);
     all.gather(others, &places);
+    let mut log_prior = 0.0;
     for (column, off_centre, e, k) in priors {
         let sd = fit.extensions[e].effect.parameter(k).typical;
         if sd > 0.0 {
             add_prior(&mut all, column, off_centre, sd);
+            log_prior -= 2.0 * sd.ln();
         }
     }
-    all
+    (all, log_prior)
 }

@@ -1,79 +1,89 @@
-//! What a rival is expected to leave of runs that the favourite would make.
+//! What runs that the favourite would make are expected to say of its rivals.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
 use super::added::Added;
 use super::alike::open_shapes;
-use super::elimination::Products;
+use super::known::Known;
 use super::observation::Observation;
 use super::plan::Plan;
-use super::run_fit::{ChannelNoise, RunState, predict, summarise};
-use super::settle::Settled;
-use super::solve::Joint;
+use super::run_fit::{ChannelNoise, RunState, Summary, predict, summarise};
 use super::survey::{Fit, Survey, n_values};
 use crate::model::{N_BASE, Scope};
 
 /// Times that a rival is linearised anew on runs that it has not seen.
 const RELINEARISED: usize = 4;
 
-/// A rival with all that the runs so far say of it.
-pub(super) struct Rival {
-    pub(super) settled: Settled,
-    /// The runs so far under its scatter.
-    products: Products,
-    /// What they leave.
-    least_misfit: f64,
-}
-
-impl Rival {
-    pub(super) fn new(survey: &Survey, settled: Settled) -> Self {
-        let joint = Joint::new(survey, &settled.fit, &settled.summaries);
-        let (_, products) = joint.gathered(&settled.solution.scatter);
-        let least_misfit = settled.solution.least_misfit;
-        Self { settled, products, least_misfit }
-    }
-}
-
-/// What a run that was not made is expected to say.
+/// What a run that was not made is expected to say of a rival.
 pub(super) struct Foretold {
-    /// Half of the misfit that the rival would keep, or the logarithm by which its shape is
-    /// narrowed.
+    /// Logarithm of the Bayes factor against it, or that by which its shape is narrowed.
     pub(super) log: f64,
     /// Which of the shapes that the rival may start from in this run comes nearest.
     nearest: usize,
 }
 
-/// A run that the favourite makes, and where a rival starts in it.
-struct Made {
-    run: Observation,
-    guess: RunState,
-    noise: ChannelNoise,
+/// Runs that a favourite makes.
+struct Made<'a> {
+    survey: &'a Survey,
+    favourite: (&'a str, &'a Known),
+    runs: Vec<(RunState, ChannelNoise)>,
+    /// The survey with them.
+    grown: Survey,
+    /// Logarithm by which they change the favourite's own evidence.
+    gains: f64,
 }
 
-impl Made {
+impl<'a> Made<'a> {
     fn new(
-        survey: &Survey,
-        favourite: &Fit,
-        rival: &Fit,
-        (plan, span_s): (Plan, f64),
+        survey: &'a Survey,
+        favourite: (&'a str, &'a Known),
+        plans: &[(Plan, f64)],
         to_come: [Option<(f64, f64)>; 2],
     ) -> Self {
-        let (mut run, state, noise) = plan.observed(survey, favourite, span_s, to_come);
-        let truth = with_run(survey, favourite, &run, state.clone());
-        let readings = predict(&run, &state, &truth.terms(survey.runs.len()));
-        let (roll, moment) = readings.split_at(run.roll_time_s.len());
-        (run.roll_rad, run.moment_n_m) = (roll.to_vec(), moment.to_vec());
-        let law = rival.laws[survey.condition_of[0]].at(plan.froude);
-        let mut guess = state;
-        (guess.base.natural_rad_s, guess.base.b1_per_s, guess.base.b3_s) = (law[0], law[1], law[2]);
-        guess.base.log_scale = rival.log_scale;
-        Self { run, guess, noise }
+        let known = favourite.1;
+        let mut fit = known.settled.fit.clone();
+        let (mut observed, mut runs, mut summaries) = (Vec::new(), Vec::new(), Vec::new());
+        for (plan, span_s) in plans {
+            let (mut run, state, noise) =
+                plan.observed(survey, &known.settled.fit, *span_s, to_come);
+            fit = with_run(survey, &fit, &run, state.clone());
+            let terms = fit.terms(survey.runs.len() + runs.len());
+            let readings = predict(&run, &state, &terms);
+            let (roll, moment) = readings.split_at(run.roll_time_s.len());
+            (run.roll_rad, run.moment_n_m) = (roll.to_vec(), moment.to_vec());
+            summaries.push(summarise(&run, &state, &terms, &[], &noise));
+            observed.push(run);
+            runs.push((state, noise));
+        }
+        let grown = grown_survey(survey, observed);
+        let gains = known.gains(&grown, &fit, &summaries);
+        Self { survey, favourite, runs, grown, gains }
     }
 
-    /// The rival's fit with this run, from each of the shapes that it may start from there.
-    fn starts(&self, survey: &Survey, rival: &Fit) -> Vec<Fit> {
-        with_own_set(with_run(survey, rival, &self.run, self.guess.clone()), &self.run)
+    /// A rival's fit with the run at a place among these, from each of the shapes that it may start
+    /// from there.
+    fn starts(&self, rival: &Fit, place: usize) -> Vec<Fit> {
+        let run = &self.grown.runs[self.survey.runs.len() + place];
+        let [w, b1, b3] = rival.laws[self.survey.condition_of[0]].at(run.at.froude);
+        let mut guess = self.runs[place].0.clone();
+        (guess.base.natural_rad_s, guess.base.b1_per_s, guess.base.b3_s) = (w, b1, b3);
+        guess.base.log_scale = rival.log_scale;
+        with_own_set(with_run(self.survey, rival, run, guess), run)
+    }
+
+    /// What they say of a rival that comes so near.
+    fn said(&self, rival: &Known, answer: &Answer) -> f64 {
+        let (id, _) = self.favourite;
+        if let Some((_, shapes)) = open_shapes(self.survey, &rival.settled.fit, id) {
+            // Where the rival is the favourite with its shape left open, nothing but that shape
+            // parts them.
+            let before = &rival.settled.solution.covariance;
+            let after = answer.added.eliminated.covariance();
+            let gains = shapes.iter().map(|(_, c)| 0.5 * (before[*c][*c] / after[*c][*c]).ln());
+            return gains.fold(f64::INFINITY, f64::min);
+        }
+        (self.gains - rival.gains(&self.grown, &answer.fit, &answer.summaries)).max(0.0)
     }
 }
 
@@ -132,71 +142,62 @@ fn with_own_set(fit: Fit, run: &Observation) -> Vec<Fit> {
     if nodes.is_empty() { vec![fit] } else { nodes.into_iter().map(started).collect() }
 }
 
-/// What a run is expected to say between a favourite, which makes it, and a rival.
+/// What a run is expected to say of each rival of a favourite that makes it.
 pub(super) fn foretold(
     survey: &Survey,
-    (id, favourite): (&str, &Fit),
-    rival: &Rival,
+    favourite: (&str, &Known),
+    rivals: &[&Known],
     plan: (Plan, f64),
     to_come: [Option<(f64, f64)>; 2],
-) -> Foretold {
-    let made = Made::new(survey, favourite, &rival.settled.fit, plan, to_come);
-    let starts = made.starts(survey, &rival.settled.fit);
-    let grown = grown_survey(survey, vec![made.run]);
-    let answer =
-        |k: usize, rounds| answered(survey, &grown, rival, &starts[k], &[made.noise], rounds);
-    // Of the shapes the nearest is found in one round, as a score finds it.
-    let left: Vec<f64> = match starts.len() {
-        1 => vec![0.0],
-        n => (0..n).map(|k| answer(k, 1).least_misfit()).collect(),
+) -> Vec<Foretold> {
+    let made = Made::new(survey, favourite, &[plan], to_come);
+    let of_rival = |rival: &&Known| {
+        let starts = made.starts(&rival.settled.fit, 0);
+        // Of the shapes the nearest is found in one round, as a score finds it.
+        let left: Vec<f64> = match starts.len() {
+            1 => vec![0.0],
+            _ => starts.iter().map(|s| answer(&made, rival, s, 1).added.least_misfit()).collect(),
+        };
+        let nearest = (0..left.len()).min_by(|a, b| left[*a].total_cmp(&left[*b])).unwrap_or(0);
+        let answer = answer(&made, rival, &starts[nearest], RELINEARISED);
+        Foretold { log: made.said(rival, &answer), nearest }
     };
-    let nearest = (0..left.len()).min_by(|a, b| left[*a].total_cmp(&left[*b])).unwrap_or(0);
-    Foretold { log: said(survey, id, rival, &answer(nearest, RELINEARISED)), nearest }
+    rivals.iter().map(of_rival).collect()
 }
 
-/// The same of two runs together: a rival that each run has of its own starts from the shape that
-/// came nearest in each alone, for of couples of shapes there are too many to try.
+/// What two runs together are expected to say of the rival that is hardest to part: one that each
+/// run has of its own starts from the shape that came nearest in each alone, for of couples of
+/// shapes there are too many to try.
 pub(super) fn foretold_together(
     survey: &Survey,
-    (id, favourite): (&str, &Fit),
-    rival: &Rival,
+    favourite: (&str, &Known),
+    rivals: &[&Known],
     plans: [(Plan, f64); 2],
-    alone: [&Foretold; 2],
+    alone: [&[Foretold]; 2],
     to_come: [Option<(f64, f64)>; 2],
 ) -> f64 {
-    let mut start = rival.settled.fit.clone();
-    let made = plans.map(|plan| Made::new(survey, favourite, &start, plan, to_come));
-    for (made, alone) in made.iter().zip(alone) {
-        start = made.starts(survey, &start).swap_remove(alone.nearest);
-    }
-    let noises = [made[0].noise, made[1].noise];
-    let grown = grown_survey(survey, made.map(|made| made.run).to_vec());
-    said(survey, id, rival, &answered(survey, &grown, rival, &start, &noises, RELINEARISED))
+    let made = Made::new(survey, favourite, &plans, to_come);
+    let of_rival = |(k, rival): (usize, &&Known)| {
+        let mut start = rival.settled.fit.clone();
+        for (place, alone) in alone.iter().enumerate() {
+            start = made.starts(&start, place).swap_remove(alone[k].nearest);
+        }
+        made.said(rival, &answer(&made, rival, &start, RELINEARISED))
+    };
+    rivals.iter().enumerate().map(of_rival).fold(f64::INFINITY, f64::min)
 }
 
-/// Half of the misfit that a rival keeps on added runs, or the logarithm by which they narrow its
-/// shape.
-fn said(survey: &Survey, favourite: &str, rival: &Rival, answer: &Added) -> f64 {
-    if let Some((_, shapes)) = open_shapes(survey, &rival.settled.fit, favourite) {
-        // Where the rival is the favourite with its shape left open, nothing but that shape parts
-        // them.
-        let (before, after) = (&rival.settled.solution.covariance, answer.eliminated.covariance());
-        let gains = shapes.iter().map(|(_, c)| 0.5 * (before[*c][*c] / after[*c][*c]).ln());
-        return gains.fold(f64::INFINITY, f64::min);
-    }
-    0.5 * (answer.least_misfit() - rival.least_misfit).max(0.0)
+/// A rival's answer to runs that it has not made.
+struct Answer {
+    added: Added,
+    fit: Fit,
+    summaries: Vec<Summary>,
 }
 
-/// The rival's answer to the added runs with all its numbers, as far as the runs so far let it,
-/// linearised anew so many times.
-fn answered(
-    survey: &Survey,
-    grown: &Survey,
-    rival: &Rival,
-    start: &Fit,
-    noises: &[ChannelNoise],
-    rounds: usize,
-) -> Added {
+/// The rival's answer with all its numbers, as far as the runs so far let it, linearised anew so
+/// many times.
+fn answer(made: &Made, rival: &Known, start: &Fit, rounds: usize) -> Answer {
+    let (survey, grown) = (made.survey, &made.grown);
     let (known, scatter) = (&rival.settled.fit, &rival.settled.solution.scatter);
     let mut fit = start.clone();
     // Where the added runs are linearised; the others stay where they were.
@@ -206,8 +207,8 @@ fn answered(
         round += 1;
         let there = Fit { extensions: extensions.clone(), ..fit.clone() };
         let summaries: Vec<_> = (survey.runs.len()..grown.runs.len())
-            .zip(noises)
-            .map(|(r, noise)| {
+            .zip(&made.runs)
+            .map(|(r, (_, noise))| {
                 let (now, then) = (there.terms(r), fit.terms(r));
                 let state = &fit.states[r];
                 grown.spend(r, &now, state.own.len() + N_BASE + n_values(&now));
@@ -222,7 +223,7 @@ fn answered(
             .collect();
         let added = Added::new((known, &rival.products), grown, &fit, &summaries, scatter);
         if round == rounds {
-            return added;
+            return Answer { added, fit, summaries };
         }
         let (moved, states) = added.moved(grown, &fit, &summaries);
         extensions = moved;

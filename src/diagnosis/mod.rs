@@ -17,6 +17,7 @@ mod facts;
 mod foretold;
 mod gain;
 mod growth;
+mod known;
 mod layout;
 mod leftover;
 mod next_run;

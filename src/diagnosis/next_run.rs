@@ -6,8 +6,9 @@ use std::sync::Arc;
 use super::added::Added;
 use super::alike::{narrowing_wanted, open_shapes};
 use super::cores;
-use super::foretold::{Foretold, Rival, foretold, foretold_together, grown_survey, with_run};
+use super::foretold::{Foretold, foretold, foretold_together, grown_survey, with_run};
 use super::growth::Grown;
+use super::known::Known;
 use super::observation::Observation;
 use super::plan::{Plan, SAMPLE_S, plans};
 use super::run_fit::{ChannelNoise, summarise};
@@ -147,22 +148,20 @@ fn parting(
     let mut scored = score(survey, &without.fit, &grown.noise);
     scored.retain(|s| rivals.contains(&s.extension.effect.id));
     let tried = fit_all(survey, &without, &scored, &grown.noise);
-    let rivals_so_far: Vec<Rival> =
-        tried.into_iter().map(|one| Rival::new(survey, one.settled)).collect();
+    let known: Vec<Known> = tried.into_iter().map(|one| Known::new(survey, one.settled)).collect();
+    let known: Vec<&Known> = known.iter().collect();
+    let favoured = Known::new(survey, grown.last.clone());
     let noise = noise_to_come(survey, &grown.noise);
     let only_forced = rivals.iter().any(|rival| is_one_in_decays(favourite, rival));
     let mut plans = plans(tank, survey);
     plans.retain(|(plan, _)| !only_forced || plan.kind == RunKind::Forced);
-    let favourite_fit = (favourite, &grown.last.fit);
-    let alone = cores::each(plans.len(), |k| -> Vec<Foretold> {
-        let of_rival = |rival| foretold(survey, favourite_fit, rival, plans[k], noise);
-        rivals_so_far.iter().map(of_rival).collect()
-    });
+    let favoured = (favourite, &favoured);
+    let alone = cores::each(plans.len(), |k| foretold(survey, favoured, &known, plans[k], noise));
     tracing::debug!(spent = survey.n_spent(), runs = plans.len(), "runs foretold alone");
     let (mut log, best) = most(alone.iter().map(|told| hardest(told)))?;
     let mut set = vec![plans[best]];
-    let wanted = |rival: &Rival| narrowing_wanted(survey, &rival.settled, favourite);
-    let narrowing = rivals_so_far.iter().filter_map(wanted).reduce(f64::max);
+    let wanted = |rival: &&Known| narrowing_wanted(survey, &rival.settled, favourite);
+    let narrowing = known.iter().filter_map(wanted).reduce(f64::max);
     let (enough, worth) = match narrowing {
         Some(wanted) => (wanted, WORTH_A_RUN_OF_SHAPE),
         None => (DECIDES, WORTH_A_RUN),
@@ -171,12 +170,8 @@ fn parting(
         let couples = couples(&plans, best);
         let logs = cores::each(couples.len(), |k| {
             let [a, b] = couples[k];
-            let each = rivals_so_far.iter().zip(alone[a].iter().zip(&alone[b]));
-            let logs = each.map(|(rival, (told_a, told_b))| {
-                let (plans, told) = ([plans[a], plans[b]], [told_a, told_b]);
-                foretold_together(survey, favourite_fit, rival, plans, told, noise)
-            });
-            logs.fold(f64::INFINITY, f64::min)
+            let (plans, alone) = ([plans[a], plans[b]], [&alone[a][..], &alone[b]]);
+            foretold_together(survey, favoured, &known, plans, alone, noise)
         });
         tracing::debug!(spent = survey.n_spent(), couples = logs.len(), "couples foretold");
         if let Some((both, k)) = most(logs.into_iter())
@@ -191,7 +186,7 @@ fn parting(
     let mut decides = log >= enough;
     if narrowing.is_none() {
         // Any of the class may be the cause.
-        log = log.min(among(survey, &rivals_so_far, &set, noise));
+        log = log.min(among(survey, &known, &set, noise));
         decides = log >= DECIDES;
     }
     let w = grown.last.fit.laws[survey.condition_of[0]].numbers[0];
@@ -245,31 +240,26 @@ fn in_vain(
 /// cause; infinite where there is one rival, or nothing but a shape parts them.
 fn among(
     survey: &Survey,
-    rivals: &[Rival],
+    rivals: &[&Known],
     set: &[(Plan, f64)],
     noise: [Option<(f64, f64)>; 2],
 ) -> f64 {
-    let id = |rival: &Rival| rival.settled.fit.extensions.last().map(|e| e.effect.id);
-    let is_open = |one: &Rival, id| open_shapes(survey, &one.settled.fit, id).is_some();
-    let pairs = rivals.iter().enumerate().flat_map(|(i, cause)| {
-        rivals
-            .iter()
-            .enumerate()
-            .filter(move |(j, _)| i != *j)
-            .map(move |(_, other)| (cause, other))
-    });
-    let logs = pairs.filter_map(|(cause, other)| {
-        let id = id(cause).filter(|id| !is_open(other, id))?;
-        let cause = (id, &cause.settled.fit);
-        let alone: Vec<Foretold> =
-            set.iter().map(|plan| foretold(survey, cause, other, *plan, noise)).collect();
-        match (set, alone.as_slice()) {
+    let id = |rival: &Known| rival.settled.fit.extensions.last().map(|e| e.effect.id);
+    let is_open = |one: &Known, id| open_shapes(survey, &one.settled.fit, id).is_some();
+    let logs = rivals.iter().enumerate().filter_map(|(i, cause)| {
+        let others = rivals.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, other)| *other);
+        let id = id(cause)?;
+        let others: Vec<&Known> = others.filter(|other| !is_open(other, id)).collect();
+        let cause = (id, *cause);
+        let told = |plan: &(Plan, f64)| foretold(survey, cause, &others, *plan, noise);
+        let alone: Vec<Vec<Foretold>> = set.iter().map(told).collect();
+        Some(match (set, alone.as_slice()) {
             ([one, two], [of_one, of_two]) => {
-                let (plans, told) = ([*one, *two], [of_one, of_two]);
-                Some(foretold_together(survey, cause, other, plans, told, noise))
+                let (plans, told) = ([*one, *two], [&of_one[..], of_two]);
+                foretold_together(survey, cause, &others, plans, told, noise)
             }
-            _ => Some(hardest(&alone)),
-        }
+            _ => hardest(&alone[0]),
+        })
     });
     logs.fold(f64::INFINITY, f64::min)
 }

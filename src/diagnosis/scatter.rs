@@ -19,8 +19,13 @@ pub(super) fn scatters(survey: &Survey) -> Vec<Scatter> {
     if !repeats {
         return vec![Scatter { damping: DAMPING[0], frequency: FREQUENCY[0] }];
     }
+    all_scatters().collect()
+}
+
+/// Every scatter that is weighed where runs repeat.
+pub(super) fn all_scatters() -> impl Iterator<Item = Scatter> {
     let pairs = DAMPING.iter().flat_map(|d| FREQUENCY.iter().map(move |f| (*d, *f)));
-    pairs.map(|(damping, frequency)| Scatter { damping, frequency }).collect()
+    pairs.map(|(damping, frequency)| Scatter { damping, frequency })
 }
 
 /// Deviation of a run from its law: frequency, linear and cubic damping.

@@ -18,7 +18,7 @@ const N_DEVIATIONS: usize = 3;
 pub(super) struct Marginal {
     /// What is left are base, terms, record.
     pub(super) eliminated: Eliminated,
-    log_occam: f64,
+    pub(super) log_occam: f64,
 }
 
 /// A run's deviation from its law, then base, terms, record.

@@ -11,12 +11,15 @@ use super::score::{Outcome, score};
 use super::verdict::{Verdict, diagnose};
 
 /// The campaign with the runs that an ambiguous answer asks for together; none where it asks for
-/// none, or where only a static test would do.
+/// none that would part its class, or where only a static test would do.
 pub(crate) fn towed(campaign: &Campaign, verdict: &Verdict) -> Option<Campaign> {
     if verdict.word != "ambiguous" {
         return None;
     }
     let next = &verdict.json["next_run"];
+    if next["parts"].as_array().is_none_or(Vec::is_empty) {
+        return None;
+    }
     let longer = with_run(campaign, next)?;
     if next["with"].is_object() { with_run(&longer, &next["with"]) } else { Some(longer) }
 }
