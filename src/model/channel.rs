@@ -2,7 +2,7 @@
 
 use std::array;
 
-use super::effect::{Acts, Instant, Law};
+use super::effect::{Acts, Instant, Law, Reading};
 use super::number::{N_SLOPES, Sloped};
 use super::term::{N_BASE, Term};
 
@@ -28,6 +28,14 @@ pub(super) fn is_read_through(terms: &[Term], channel: usize) -> bool {
 fn law_of(term: &Term, channel: usize) -> Option<Law> {
     match term.effect.acts {
         Acts::Drive(law) if channel == 1 => Some(law),
+        _ => None,
+    }
+}
+
+/// The law by which an effect adds to all values of a channel.
+fn reading_of(term: &Term, channel: usize) -> Option<Reading> {
+    match term.effect.acts {
+        Acts::Roll(reading) if channel == 0 => Some(reading),
         Acts::Chain(roll, moment) => Some(if channel == 0 { roll } else { moment }),
         _ => None,
     }
@@ -38,10 +46,7 @@ fn added(term: &Term, channel: usize, values: &[f64], instants: &[Instant<'_>]) 
     if let Some(law) = law_of(term, channel) {
         return instants.iter().map(|i| (law.plain)(i, values)).collect();
     }
-    match term.effect.acts {
-        Acts::Roll(reading) => (reading.plain)(instants, values),
-        _ => Vec::new(),
-    }
+    reading_of(term, channel).map_or_else(Vec::new, |reading| (reading.plain)(instants, values))
 }
 
 /// Adds what the effects on a channel add to its readings.
@@ -119,10 +124,10 @@ pub(super) fn add_tangents(
                 .map(|(column, value)| input(*value, column))
                 .collect();
             parameter += term.values.len();
-            let added: Vec<Sloped> = match (law_of(term, channel), term.effect.acts) {
+            let added: Vec<Sloped> = match (law_of(term, channel), reading_of(term, channel)) {
                 (Some(law), _) => sloped.iter().map(|i| (law.sloped)(i, &values)).collect(),
-                (None, Acts::Roll(reading)) if channel == 0 => (reading.sloped)(&sloped, &values),
-                _ => continue,
+                (None, Some(reading)) => (reading.sloped)(&sloped, &values),
+                (None, None) => continue,
             };
             for column in here.clone() {
                 let rows = columns[column][first..].iter_mut();

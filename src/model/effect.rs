@@ -298,8 +298,9 @@ pub enum Acts {
     Roll(Reading),
     /// What the moment channel adds [N m].
     Drive(Law),
-    /// What the roll channel adds [rad], and the moment channel [N m].
-    Chain(Law, Law),
+    /// What the roll channel adds [rad], and the moment channel [N m], sample by sample in order of
+    /// time.
+    Chain(Reading, Reading),
     /// Seen in the record alone; it disturbs no estimate but the noise.
     Record(fn(&Facts) -> Option<Seen>),
 }

@@ -1,6 +1,6 @@
 //! Play of the pin joint: the force rings whenever it changes sign.
 
-use crate::model::effect::{Acts, Effect, Instant, Law, Layer, Parameter, Scope, forced};
+use crate::model::effect::{Acts, Effect, Instant, Layer, Parameter, Reading, Scope, forced};
 use crate::model::number::Number;
 
 /// The effect.
@@ -20,8 +20,8 @@ pub(super) const EFFECT: Effect = Effect {
     scope: Scope::Campaign,
     shows: forced,
     acts: Acts::Chain(
-        Law { plain: behind, sloped: behind },
-        Law { plain: ringing, sloped: ringing },
+        Reading { plain: behind, sloped: behind },
+        Reading { plain: ringing, sloped: ringing },
     ),
     always_equivalent: &[],
     reference: "geometry of the rig",
@@ -32,35 +32,44 @@ pub(super) const EFFECT: Effect = Effect {
 const CLOSING_S: f64 = 0.01;
 
 /// The roll behind the rod by half the play, on the side to which the rod pushes.
-fn behind<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
-    let side = i.moment_n_m.value().signum();
-    let open = (-since_reversal(i) / CLOSING_S).exp();
-    p[1] * (open * 2.0 - N::from(1.0)) * side
+fn behind<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
+    let at = |(i, since_s): (&Instant<'_, N>, N)| {
+        let open = (-since_s / CLOSING_S).exp();
+        p[1] * (open * 2.0 - N::from(1.0)) * i.moment_n_m.value().signum()
+    };
+    all.iter().zip(since_reversals(all)).map(at).collect()
 }
 
 /// The moment of the ringing.
-fn ringing<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
-    let w = i.run.natural_rad_s;
-    let since_s = since_reversal(i);
-    let (ringing, _) = (p[3] * since_s).sin_cos();
-    // The gap closes against the contact's stiffness, whatever the roll: play, stiffness and arm
-    // make one moment, told as a share of the restoring of a radian.
-    let size = i.run.inertia_kg_m2 * w * w * i.moment_n_m.value().signum();
-    p[0] * (-since_s / p[2]).exp() * ringing * size
+fn ringing<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
+    let at = |(i, since_s): (&Instant<'_, N>, N)| {
+        let (ringing, _) = (p[3] * since_s).sin_cos();
+        // The gap closes against the contact's stiffness, whatever the roll: play, stiffness and
+        // arm make one moment, told as a share of the restoring of a radian.
+        let restoring = i.run.inertia_kg_m2 * i.run.natural_rad_s.powi(2);
+        p[0] * (-since_s / p[2]).exp() * ringing * (restoring * i.moment_n_m.value().signum())
+    };
+    all.iter().zip(since_reversals(all)).map(at).collect()
 }
 
-/// Time since the moment changed its sign [s]: that of a sine tells by its growth how long ago.
-fn since_reversal<N: Number>(i: &Instant<'_, N>) -> N {
-    let rolling = i.run.rolling_rad_s;
-    let stiffness = i.natural_rad_s * i.natural_rad_s;
-    let restoring = i.run.inertia_kg_m2 * i.run.natural_rad_s.powi(2);
-    let growth = (i.rate_rad_per_s * (stiffness - rolling * rolling)
-        + i.acceleration_rad_per_s2 * i.b1_per_s)
-        * restoring
-        / stiffness;
-    let tangent = i.moment_n_m * rolling / growth;
-    let angle = tangent.value().atan();
-    // From the crest on the moment falls until its next change of sign.
-    let since = if angle < 0.0 { angle + std::f64::consts::PI } else { angle };
-    tangent.chain(since, (1.0 + tangent.value().powi(2)).recip()) / rolling
+/// Time since the moment changed its sign [s], at each instant; before the first change of the
+/// record since half a period of the rod before that.
+fn since_reversals<N: Number>(all: &[Instant<'_, N>]) -> Vec<N> {
+    let changes = |pair: &[Instant<'_, N>]| {
+        let [before, after] = [pair[0].moment_n_m, pair[1].moment_n_m];
+        let is_change = before.value() * after.value() < 0.0;
+        let step_s = pair[1].time_s - pair[0].time_s;
+        is_change.then(|| before / (before - after) * step_s + N::from(pair[0].time_s))
+    };
+    let Some(first) = all.windows(2).find_map(changes) else {
+        return all.iter().map(|i| N::from(i.time_s)).collect();
+    };
+    let half_period_s = std::f64::consts::PI / all[0].run.rolling_rad_s;
+    let mut last = first - N::from(half_period_s);
+    let mut since = vec![N::from(all[0].time_s) - last];
+    for pair in all.windows(2) {
+        last = changes(pair).unwrap_or(last);
+        since.push(N::from(pair[1].time_s) - last);
+    }
+    since
 }

@@ -95,7 +95,9 @@ impl Hidden for PinPlay {
         for at in 1..felt.len() {
             let now_s = motion.time_s[at];
             if felt[at] * felt[at - 1] < 0.0 {
-                reversed = Some((now_s, felt[at].signum()));
+                // It lies between two steps, and the ringing is fast beside these.
+                let late = felt[at] / (felt[at] - felt[at - 1]);
+                reversed = Some((now_s - late * motion.step_s, felt[at].signum()));
             }
             let Some((since_s, side)) = reversed.map(|(when_s, side)| (now_s - when_s, side))
             else {
