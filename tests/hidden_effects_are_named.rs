@@ -323,4 +323,8 @@ fn two_causes_are_not_taken_for_one_that_looks_like_both() {
 fn a_loose_pin_is_named_by_its_ringing_and_by_what_the_roll_lags() {
     let told = outcome(RunSet::Forced, "exciter.pin_play", 1.0, 710);
     assert_eq!(told, Outcome::Named);
+    // Loud ringing leaves no other name beside it: it begins where the force changes sign.
+    let seed = drawn_seed("loud pin");
+    let (_, verdict) = diagnosed(RunSet::Forced, &["exciter.pin_play"], 2.0, seed);
+    assert_eq!(named(&verdict), ["exciter.pin_play"]);
 }
