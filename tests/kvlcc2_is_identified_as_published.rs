@@ -6,11 +6,13 @@
 use std::path::PathBuf;
 
 use rolltank::campaign::{self, Campaign};
+use rolltank::inverse::estimate::Estimate;
 use rolltank::inverse::identification::{Identification, Method};
 use rolltank::inverse::{Setting, identify};
 use rolltank::pipeline::{self, Options};
 use rolltank::results::{IdentifiedRun, Results};
 use rolltank::run::{Run, Series};
+use rolltank::uncertainty::rises;
 
 const INERTIA_KG_M2: f64 = 135.6;
 
@@ -109,4 +111,21 @@ fn what_the_law_does_not_capture_is_said() {
         assert!(run.identification.natural_frequency_rad_s.sd > 0.0);
         assert!(run.identification.roll_offset_rad.sd > 0.0);
     }
+}
+
+#[test]
+fn speed_changes_the_linear_damping_and_the_nonlinear_one() {
+    let Some((_, results)) = replayed() else { return };
+    let linear = |k: usize| results.runs[k].identification.damping.b1_per_s;
+    assert!(linear(1).lo95 > 2.0 * linear(0).hi95, "{:?}, {:?}", linear(0), linear(1));
+    let rises = rises(&results);
+    let [rest, towed] = &rises[..] else { panic!("{rises:?}") };
+    for rise in &rises {
+        let ([from, to], rise_per_s) = (rise.amplitudes_deg, rise.rise_per_s);
+        let Estimate { mean, sd, .. } = rise_per_s;
+        println!("Fr {:.3}: {mean:.4} +- {sd:.4} 1/s from {from} to {to} deg", rise.froude);
+    }
+    // The eddies of the bilge are carried away: what rises with the roll is less under way.
+    let (rest, towed) = (rest.rise_per_s, towed.rise_per_s);
+    assert!(rest.mean - towed.mean > 3.0 * rest.sd.hypot(towed.sd) && towed.lo95 > 0.0);
 }

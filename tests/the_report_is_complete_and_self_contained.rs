@@ -135,6 +135,7 @@ fn the_campaign_page_shows_every_part() {
         "law-gaps",
         "damping",
         "froude-law-table",
+        "nonlinear-at-speeds-table",
         "equivalent-damping",
         "runs-table",
         "inertia-1",

@@ -19,6 +19,7 @@ mod groups;
 mod inertia;
 mod law_gaps;
 mod losses;
+mod nonlinear_at_speeds;
 mod particulars;
 mod peak_moment;
 mod plan;
@@ -36,12 +37,13 @@ use crate::inverse::identification::ForcedResponse;
 use crate::results::{IdentifiedRun, Results};
 
 /// Every part, in reading order; a part without data is left out.
-const PARTS: [fn(&CampaignPage) -> Option<Markup>; 23] = [
+const PARTS: [fn(&CampaignPage) -> Option<Markup>; 24] = [
     at_speeds::part,
     diagnosis::part,
     law_gaps::part,
     damping_against_froude::part,
     froude_law::part,
+    nonlinear_at_speeds::part,
     equivalent_damping::part,
     against_amplitude::part,
     extinction::part,
