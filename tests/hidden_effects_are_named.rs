@@ -237,6 +237,15 @@ fn a_run_that_may_not_decide_is_told_as_such_and_none_is_asked_for_in_vain() {
 }
 
 #[test]
+fn the_runs_asked_for_part_what_a_rival_could_take_for_scatter() {
+    // Off resonance at one frequency, what either leaves could be a run that lies off its law.
+    let (campaign, verdict) = diagnosed(RunSet::Rest, &["inertia.amplitude"], 0.5, 871);
+    assert!(verdict.json["next_run"]["decides"] == true, "{}", verdict.json["next_run"]);
+    let program = Path::new(env!("CARGO_BIN_EXE_rolltank"));
+    assert_eq!(decides(&campaign, &verdict, program), Some(true));
+}
+
+#[test]
 fn a_carriage_that_shakes_the_model_is_named_and_hides_no_other_cause() {
     // Bilge keels leave little of a roll but the shaking, which lies among its harmonics.
     let told = outcome(RunSet::Speeds, "tank.carriage_vibration", 2.0, 763);

@@ -179,9 +179,10 @@ fn parting(
         {
             (log, set) = (both, couples[k].map(|one| plans[one]).to_vec());
         }
-    }
-    if narrowing.is_none() && log < WORTH_A_RUN {
-        return in_vain(survey, grown, tank, favourite, rivals);
+        // Known only where couples were foretold too.
+        if narrowing.is_none() && log < WORTH_A_RUN {
+            return in_vain(survey, grown, tank, favourite, rivals);
+        }
     }
     let mut decides = log >= enough;
     if narrowing.is_none() {
