@@ -1,5 +1,6 @@
 //! The paper's campaign, simulated: its intervals must hold the truth as often as they say.
 
+use rolltank::inverse::decay::half_cycles::NEAR;
 use rolltank::inverse::estimate::Estimate;
 use rolltank::inverse::froude_law::Point;
 use rolltank::inverse::identification::{Identification, Method};
@@ -71,7 +72,7 @@ fn local_at_five(truth: &TrueRun, identification: &Identification) -> Option<boo
 }
 
 /// Whether the rise of damping that half cycles alone give, from the smallest amplitude of the
-/// contract to the largest that the run encloses, holds the truth; none where these are one.
+/// contract to the largest that the run encloses, holds the truth; none where they share half cycles.
 fn local_rise(truth: &TrueRun, identification: &Identification) -> Option<bool> {
     let all = identification.equivalent_damping.iter().filter(|at| !at.extrapolated);
     let local: Vec<(f64, Estimate)> =
@@ -80,7 +81,7 @@ fn local_rise(truth: &TrueRun, identification: &Identification) -> Option<bool> 
     let square = |deg: f64| (truth.natural_frequency_rad_s * deg.to_radians()).powi(2);
     let rise = 0.75 * truth.b3_s * (square(*to_deg) - square(*from_deg));
     let off = large.mean - small.mean - rise;
-    (to_deg - from_deg >= 2.5).then(|| off.abs() < 1.96 * large.sd.hypot(small.sd))
+    (to_deg / from_deg >= NEAR[1] / NEAR[0]).then(|| off.abs() < 1.96 * large.sd.hypot(small.sd))
 }
 
 /// Each seed on one of two threads, results in the order of the seeds.

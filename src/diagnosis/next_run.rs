@@ -56,15 +56,19 @@ pub struct NextRun {
 const ONE_IN_DECAYS: [[&str; 2]; 2] =
     [["restoring.cubic", "inertia.amplitude"], ["restoring.speed", "inertia.speed"]];
 
+fn is_one_in_decays(a: &str, b: &str) -> bool {
+    ONE_IN_DECAYS.iter().any(|pair| is_pair(*pair, a, b))
+}
+
+fn is_pair(pair: [&str; 2], a: &str, b: &str) -> bool {
+    pair == [a, b] || pair == [b, a]
+}
+
 /// What parts causes that no roll of the model does (EFFECTS.md, section 6).
 const BESIDE_THE_TANK: [([&str; 2], &str); 1] = [(
     ["instrument.channel_skew", "instrument.roll_lag"],
     "a tap on the model that both channels record",
 )];
-
-fn is_one_in_decays(a: &str, b: &str) -> bool {
-    ONE_IN_DECAYS.iter().any(|pair| *pair == [a, b] || *pair == [b, a])
-}
 
 /// The noise of roll [rad] and moment [N m] in the middling run, with all that the model leaves of
 /// it and its memory: to the next run that is noise too. None of a moment that no run reads.
@@ -225,9 +229,9 @@ fn in_vain(
 ) -> Option<NextRun> {
     let mut next = informing(survey, grown, tank)?;
     next.decides = false;
-    let is_between =
-        |pair: &[&str]| pair.contains(&favourite) && rivals.len() == 1 && pair.contains(&rivals[0]);
-    let otherwise = BESIDE_THE_TANK.iter().find(|(pair, _)| is_between(pair));
+    let mut ways = BESIDE_THE_TANK.iter();
+    let otherwise =
+        ways.find(|(pair, _)| rivals.len() == 1 && is_pair(*pair, favourite, rivals[0]));
     let otherwise = otherwise.map(|(_, what)| format!("; {what} may")).unwrap_or_default();
     let names = rivals.join(", ");
     next.why = format!(

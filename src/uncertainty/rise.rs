@@ -1,5 +1,8 @@
 //! How far the damping of decays rises with the roll, speed by speed, whatever its law.
+//!
+//! The fitted law is used only to move half cycles to the amplitude that they are near.
 
+use crate::inverse::decay::half_cycles::NEAR;
 use crate::inverse::estimate::Estimate;
 use crate::results::{IdentifiedRun, Results, by_speed};
 use crate::run::RunKind;
@@ -20,8 +23,8 @@ pub struct Rise {
     pub rise_per_s: Estimate,
 }
 
-/// Least distance of the amplitudes [deg]: nearer ones share half cycles.
-const APART_DEG: f64 = 2.5;
+/// Least ratio of the amplitudes [-]: nearer ones share half cycles, and their errors.
+const APART: f64 = NEAR[1] / NEAR[0];
 
 /// The rise of `b_eq` at each speed of the conditions whose decays reach the same two amplitudes at
 /// two speeds or more: those that most speeds reach, as far apart as these allow.
@@ -41,7 +44,7 @@ fn of_condition(condition: &str, speeds: &[Vec<&IdentifiedRun>]) -> Vec<Rise> {
     amplitudes_deg.dedup();
     let mut best: Vec<Rise> = Vec::new();
     for small in &amplitudes_deg {
-        for large in amplitudes_deg.iter().filter(|large| **large >= small + APART_DEG) {
+        for large in amplitudes_deg.iter().filter(|large| **large >= APART * small) {
             let between = [*small, *large];
             let rises: Vec<Rise> =
                 speeds.iter().filter_map(|runs| at_speed(condition, runs, between)).collect();

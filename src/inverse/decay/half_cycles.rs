@@ -62,12 +62,15 @@ pub fn half_cycles(
         .collect()
 }
 
+/// Half cycles near an amplitude: theirs over it.
+pub const NEAR: [f64; 2] = [0.8, 1.25];
+
 /// Equivalent damping near one amplitude: the energy lost between the peaks that enclose it by a
 /// quarter, moved to the amplitude with the slope `b3_s` [s] of the fitted law.
 pub fn local_damping(half_cycles: &[HalfCycle], amplitude_rad: f64, b3_s: f64) -> Option<Estimate> {
     let near: Vec<&HalfCycle> = half_cycles
         .iter()
-        .filter(|h| (0.8..=1.25).contains(&(h.amplitude_rad / amplitude_rad)))
+        .filter(|h| (NEAR[0]..=NEAR[1]).contains(&(h.amplitude_rad / amplitude_rad)))
         .collect();
     let reached = near.iter().any(|h| h.amplitude_rad >= amplitude_rad)
         && near.iter().any(|h| h.amplitude_rad <= amplitude_rad);
