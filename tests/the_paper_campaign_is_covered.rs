@@ -72,7 +72,7 @@ fn local_at_five(truth: &TrueRun, identification: &Identification) -> Option<boo
 }
 
 /// Whether the rise of damping that half cycles alone give, from the smallest amplitude of the
-/// contract to the largest that the run encloses, holds the truth; none where half cycles are in both.
+/// contract to the largest that the run encloses, holds the truth; none where these share cycles.
 fn local_rise(truth: &TrueRun, identification: &Identification) -> Option<bool> {
     let all = identification.equivalent_damping.iter().filter(|at| !at.extrapolated);
     let local: Vec<(f64, Estimate)> =
