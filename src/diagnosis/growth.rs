@@ -4,6 +4,7 @@ use super::alike::{SAME, is_approximate};
 use super::backward::{check_backward, instead};
 use super::entry::{Best, CRUMB_OF_EVIDENCE, best};
 use super::leftover::{self, Leftover};
+use super::reseated::reseated;
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score_all_but};
 use super::settle::{Settled, settle};
@@ -140,7 +141,7 @@ fn climb(survey: &Survey, start: Growing, banned: &[&'static str], beside: &mut 
         }
         match step.best {
             Best::Enters(settled, newest) => {
-                now.current = settled;
+                now.current = reseated(survey, settled, &step.noise);
                 now.entered.push(newest);
                 passed_over = banned.to_vec();
             }

@@ -28,6 +28,7 @@ mod partial;
 mod plan;
 mod records;
 mod repeating;
+mod reseated;
 mod reversed;
 mod run_fit;
 mod scatter;

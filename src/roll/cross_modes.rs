@@ -12,21 +12,26 @@ pub struct Section {
 /// Highest order that is looked at: waves of a twentieth of the width.
 const MOST: usize = 41;
 
-/// The antisymmetric mode nearest to a frequency [rad/s], and how far apart it and the next one on
-/// that side are [rad/s]. A model amid the tank is rolled by these, the odd ones of
-/// `w_n^2 = k g tanh(k d)`, `k = n pi/width`.
-pub fn nearest(frequency_rad_s: f64, section: &Section, gravity_m_s2: f64) -> (f64, f64) {
-    let mode_rad_s = |n: usize| {
-        let number_per_m = n as f64 * std::f64::consts::PI / section.width_m;
-        let bottom = section.depth_m.map_or(1.0, |depth_m| (number_per_m * depth_m).tanh());
+/// Frequencies [rad/s] of the antisymmetric modes, lowest first: a model amid the tank is rolled by
+/// these, the odd ones of `w_n^2 = k g tanh(k d)`, `k = n pi/width`.
+pub fn all(section: &Section, gravity_m_s2: f64) -> impl Iterator<Item = f64> + Clone {
+    let Section { width_m, depth_m } = *section;
+    (1..=MOST).step_by(2).map(move |n| {
+        let number_per_m = n as f64 * std::f64::consts::PI / width_m;
+        let bottom = depth_m.map_or(1.0, |depth_m| (number_per_m * depth_m).tanh());
         (number_per_m * gravity_m_s2 * bottom).sqrt()
-    };
-    let off = |n: &usize| (mode_rad_s(*n) - frequency_rad_s).abs();
-    let odd = (1..=MOST).step_by(2);
-    let n = odd.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(1);
-    let mode = mode_rad_s(n);
-    let next = if frequency_rad_s < mode && n > 1 { n - 2 } else { n + 2 };
-    (mode, (mode_rad_s(next) - mode).abs())
+    })
+}
+
+/// The antisymmetric mode nearest to a frequency [rad/s], and how far apart it and the next one on
+/// that side are [rad/s].
+pub fn nearest(frequency_rad_s: f64, section: &Section, gravity_m_s2: f64) -> (f64, f64) {
+    let modes: Vec<f64> = all(section, gravity_m_s2).collect();
+    let above = modes.partition_point(|mode| *mode < frequency_rad_s).clamp(1, modes.len() - 1);
+    let [low, high] = [modes[above - 1], modes[above]];
+    let is_low = frequency_rad_s - low < high - frequency_rad_s;
+    let mode = if is_low { low } else { high };
+    (mode, high - low)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Waves of an earlier run still press on the model.
 
 use crate::model::effect::{
-    Acts, Circumstances, Effect, Instant, Law, Layer, Parameter, Scope, any_run, each,
+    Acts, Circumstances, Effect, Instant, Law, Layer, Parameter, Scope, any_run,
 };
 use crate::model::number::Number;
 use crate::roll::cross_modes;
@@ -10,16 +10,16 @@ use crate::roll::cross_modes;
 pub(super) const EFFECT: Effect = Effect {
     id: "tank.residual_wave",
     layer: Layer::Tank,
-    equation: "a cos(v t) + b sin(v t)",
+    equation: "(a cos(v t) + b sin(v t)) exp(-d t)",
     strengths: &[
         Parameter::new("a", "rad/s2", 0.008, [-0.1, 0.1]),
         Parameter::new("b", "rad/s2", 0.008, [-0.1, 0.1]),
     ],
-    shapes: &[Parameter::new("v", "rad/s", 0.12, [1.0, 20.0]).held_to(log_odds_of_mode)],
-    nodes: |run| {
-        let shares = [0.7, 0.8, 0.86, 0.92, 0.98, 1.04, 1.1, 1.2];
-        each(&shares.map(|share| share * run.natural_rad_s))
-    },
+    shapes: &[
+        Parameter::new("v", "rad/s", 0.04, [1.0, 20.0]).held_to(log_odds_of_mode),
+        Parameter::new("d", "1/s", CALMS_PER_S, [0.0, 0.1]),
+    ],
+    nodes: |run| standing(run).into_iter().map(|v| vec![v, CALMS_PER_S]).collect(),
     scope: Scope::Run,
     shows: any_run,
     acts: Acts::Moment(Law { plain: law, sloped: law }),
@@ -29,7 +29,34 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn law<N: Number>(i: &Instant<'_, N>, p: &[N]) -> N {
     let (sin, cos) = (p[2] * i.time_s).sin_cos();
-    p[0] * cos + p[1] * sin
+    let wave = p[0] * cos + p[1] * sin;
+    if outlasts_the_roll(i.run) { wave } else { wave * (-(p[3] * i.time_s)).exp() }
+}
+
+/// Whether waves are left as long as the model rolls, or longer. One that died away as such a roll
+/// does would be any want of the roll's own decay, so these are taken to last.
+fn outlasts_the_roll(run: &Circumstances) -> bool {
+    0.5 * run.b1_per_s < 3.0 * CALMS_PER_S
+}
+
+/// Rate at which a tank calms down, and how well that is known [1/s]: waves are left for minutes.
+const CALMS_PER_S: f64 = 0.01;
+
+/// Shares of the natural frequency between which a wave rolls the model.
+const ROLLS: [f64; 2] = [0.7, 1.2];
+/// Frequencies tried in a tank whose width is not known.
+const N_TRIED: usize = 16;
+
+/// Frequencies [rad/s] of the waves that may be left.
+fn standing(run: &Circumstances) -> Vec<f64> {
+    let [low, high] = ROLLS.map(|share| share * run.natural_rad_s);
+    let modes = run.section.iter().flat_map(|of| cross_modes::all(of, run.gravity_m_s2));
+    let modes: Vec<f64> = modes.filter(|mode| (low..high).contains(mode)).collect();
+    if !modes.is_empty() {
+        return modes;
+    }
+    let step = (high - low) / (N_TRIED - 1) as f64;
+    (0..N_TRIED).map(|k| low + step * k as f64).collect()
 }
 
 /// Share to which a tank's modes follow from its width and depth.
@@ -62,5 +89,25 @@ mod tests {
         assert!(log_odds_of_mode(&known, 6.95, 1.0).abs() < 2.0);
         let unknown = Circumstances { section: None, ..known };
         assert!(log_odds_of_mode(&unknown, 6.95, 0.02).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_wave_that_lasts_as_long_as_the_roll_does_not_die_away_as_that_does() {
+        let after_a_minute = |b1_per_s| {
+            let run = Circumstances { b1_per_s, ..run(RunKind::Decay) };
+            let instant = Instant {
+                time_s: 60.0,
+                roll_rad: 0.0,
+                rate_rad_per_s: 0.0,
+                acceleration_rad_per_s2: 0.0,
+                moment_n_m: 0.0,
+                natural_rad_s: run.natural_rad_s,
+                b1_per_s,
+                run: &run,
+            };
+            law(&instant, &[1.0, 0.0, 0.0, 0.01])
+        };
+        assert!((after_a_minute(0.4) - f64::exp(-0.6)).abs() < 1e-12);
+        assert!((after_a_minute(0.02) - 1.0).abs() < 1e-12);
     }
 }

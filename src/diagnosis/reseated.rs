@@ -1,0 +1,52 @@
+//! The shapes of what each run has of its own, chosen again once the model knows more.
+
+use super::growth::leftovers;
+use super::leftover::Leftover;
+use super::onset;
+use super::run_fit::ChannelNoise;
+use super::score::score;
+use super::settle::{Settled, settle};
+use super::survey::Survey;
+use super::trial::with;
+use crate::model::Scope;
+
+/// Logarithm of the evidence that a choice must gain to be worth its change.
+const WORTH: f64 = 1.0;
+
+/// The model with the shapes of all but its newest effect chosen again, run by run, where those
+/// were chosen while the newest was missing and structure is left: a wave that was taken for the
+/// next mode of the tank settles in no steps.
+pub(super) fn reseated(survey: &Survey, grown: Settled, noise: &[ChannelNoise]) -> Settled {
+    let mut current = grown;
+    let n_known = current.fit.extensions.len().saturating_sub(1);
+    for e in 0..n_known {
+        let effect = current.fit.extensions[e].effect;
+        let is_chosen = effect.scope == Scope::Run && !effect.shapes.is_empty();
+        if !is_chosen || survey.is_spent() || !is_structure_left(survey, &current) {
+            continue;
+        }
+        let mut less = current.fit.clone();
+        less.extensions.remove(e);
+        let without = settle(survey, less, noise);
+        let scores = score(survey, &without.fit, noise);
+        let Some(again) = scores.into_iter().find(|s| s.extension.effect.id == effect.id) else {
+            continue;
+        };
+        let chosen = settle(survey, with(survey, &without.fit, again.extension, noise), noise);
+        let mut chosen = onset::placed(survey, chosen, noise).fit;
+        if let Some(newest) = chosen.extensions.pop() {
+            chosen.extensions.insert(e, newest);
+        }
+        let chosen = settle(survey, chosen, noise);
+        let gained = chosen.log_evidence - current.log_evidence;
+        tracing::debug!(effect = effect.id, gained, "chosen again");
+        if gained > WORTH {
+            current = chosen;
+        }
+    }
+    current
+}
+
+fn is_structure_left(survey: &Survey, settled: &Settled) -> bool {
+    leftovers(survey, &settled.fit).iter().any(Leftover::is_structure)
+}
