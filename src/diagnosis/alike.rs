@@ -138,7 +138,11 @@ pub(super) fn contains(rival: &str, favourite: &str) -> bool {
 /// ringing.
 pub(super) fn is_approximate(id: &str) -> bool {
     effects::effect(id).is_some_and(|effect| {
-        effect.layer == Layer::Tank || matches!(effect.acts, Acts::Lagging(_) | Acts::Chain(..))
+        matches!(effect.layer, Layer::Tank)
+            || matches!(
+                (effect.layer, effect.acts),
+                (_, Acts::Lagging(_)) | (Layer::Exciter, Acts::Chain(..))
+            )
     })
 }
 

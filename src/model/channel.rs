@@ -70,7 +70,8 @@ pub(super) fn add_candidates(
     let mut column = columns.len() - n;
     for candidate in candidates {
         for (values, step) in candidate.nudged_each() {
-            if acts_on(candidate, channel) && (candidate.effect.shows)(instants[0].run) {
+            let is_shown = instants.first().is_some_and(|i| (candidate.effect.shows)(i.run));
+            if is_shown && acts_on(candidate, channel) {
                 let added = added(candidate, channel, &values, instants);
                 let rows = columns[column][first..].iter_mut();
                 rows.zip(added).for_each(|(row, more)| *row += more / step);
