@@ -11,6 +11,8 @@ use super::hidden_tank::campaign::{Asked, Campaign, SCATTER};
 use super::hidden_tank::effects::{CATALOGUED, INVENTED};
 use super::hidden_tank::fit::{misfit, misfit_beside};
 use super::hidden_tank::folder::{play, truth};
+use super::hidden_tank::foretold;
+use super::hidden_tank::instruments::ROLL_NOISE_RAD;
 use super::hidden_tank::integrate::{State, step};
 use super::hidden_tank::motion::simulate;
 use super::hidden_tank::plan::RunSet;
@@ -125,6 +127,21 @@ fn what_one_hidden_effect_takes_up_is_not_left_of_the_other() {
     let alone = misfit(&both, &both.effects[1..], None);
     let beside = misfit_beside(&both, &both.effects[0]);
     assert!(alone > 1000.0 && beside < 12.0, "{beside} of {alone} is left");
+}
+
+#[test]
+fn the_true_model_foretells_all_of_a_run_but_its_noise_and_what_the_day_drew_for_it() {
+    let noise_deg = ROLL_NOISE_RAD.to_degrees();
+    let error_deg = |id: &str, scatter: f64| {
+        let asked = Asked { scatter, ..asked(RunSet::Speeds, &[id], 2.0, 1) };
+        foretold::rmse_deg(&Campaign::draw(&asked)) / noise_deg
+    };
+    for id in ["restoring.cubic", "instrument.roll_backlash", "damping.vortex_history"] {
+        let off = error_deg(id, 0.0) - 1.0;
+        assert!(off.abs() < 0.02, "{id}: {off} beyond the noise");
+    }
+    assert!(error_deg("restoring.cubic", SCATTER) > 1.05, "it knows the scatter");
+    assert!(error_deg("tank.residual_wave", 0.0) > 1.5, "it knows the waves of the day");
 }
 
 #[test]

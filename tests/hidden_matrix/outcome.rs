@@ -10,10 +10,10 @@ use crate::hidden_tank::campaign::{Asked, Campaign};
 use crate::hidden_tank::effects::labels::MISLABELLED;
 use crate::hidden_tank::fit::{INDISTINGUISHABLE, left_by, misfit, misfit_beside};
 use crate::hidden_tank::folder::play;
+use crate::hidden_tank::foretold;
 use crate::hidden_tank::next_run::decides;
 use crate::hidden_tank::plan::Pass;
 use crate::hidden_tank::score::{Outcome, score};
-use crate::hidden_tank::timeline::Timeline;
 use crate::hidden_tank::verdict::{Verdict, diagnose};
 
 /// The outcomes written so far; a line that was cut short is left out, and its cell run again.
@@ -66,7 +66,6 @@ pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
         "set": asked.set.name(), "seed": asked.seed, "scatter": asked.scatter,
         "keels": campaign.keels, "lambda": lambda,
         "lambda_beside": lambda_beside, "seconds": seconds,
-        "noise_rmse_deg": noise_rmse_deg(&campaign),
     });
     let verdict = match answer {
         Ok(verdict) => verdict,
@@ -92,25 +91,12 @@ pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
     line["values"] =
         campaign.effects.iter().map(|effect| json!(effect.values)).collect::<Vec<_>>().into();
     line["covered"] = covered(&campaign, &verdict.json["causes"]);
+    if matches!(outcome, Outcome::Named | Outcome::InClass) {
+        line["foretold_rmse_deg"] = json!(foretold::rmse_deg(&campaign));
+    }
     line["decided"] = json!(decides(&campaign, &verdict, program));
     tell(&mut line, &verdict);
     line
-}
-
-/// What no model could foretell of the roll: recording less the same without noise, in the runs.
-fn noise_rmse_deg(campaign: &Campaign) -> f64 {
-    let (mut sum, mut n) = (0.0, 0.0);
-    for pass in &campaign.passes {
-        let [noisy, still] = [true, false].map(|noisy| campaign.rows(pass, noisy));
-        let line = Timeline::of(pass);
-        for (i, time_s) in noisy.time_s.iter().enumerate() {
-            if (line.start_s..line.end_s).contains(time_s) {
-                sum += (noisy.roll_deg[i] - still.roll_deg[i]).powi(2);
-                n += 1.0;
-            }
-        }
-    }
-    f64::sqrt(sum / n)
 }
 
 /// What else of the answer the tables need.

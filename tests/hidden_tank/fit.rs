@@ -34,12 +34,12 @@ const START_STEP: f64 = 1e-5;
 /// Misfit below which two effects are one class on the runs at hand (EFFECTS.md, section 6).
 pub(crate) const INDISTINGUISHABLE: f64 = 12.0;
 
-/// A pass with what it would show without noise.
-struct Target {
-    pass: Pass,
-    rows: Rows,
-    first: usize,
-    last: usize,
+/// A pass with what it shows.
+pub(super) struct Target {
+    pub(super) pass: Pass,
+    pub(super) rows: Rows,
+    pub(super) first: usize,
+    pub(super) last: usize,
     roll_sd: f64,
 }
 
@@ -125,15 +125,19 @@ fn step_of(unknown: usize, n_beside: usize) -> f64 {
 
 /// The noise-free recording of a pass between the start and the end of its run.
 fn target(campaign: &Campaign, hidden: &[Effect], pass: &Pass) -> Target {
-    let rows = campaign.rows_with(hidden, pass, false);
+    recorded(campaign.rows_with(hidden, pass, false), pass, pass.as_labelled())
+}
+
+/// A recording of a pass between the start and the end of its run, to be modelled as another.
+pub(super) fn recorded(rows: Rows, pass: &Pass, as_pass: Pass) -> Target {
     let line = Timeline::of(pass);
     let at = |time_s: f64| rows.time_s.partition_point(|stamp_s| *stamp_s < time_s - 1e-6);
     let (first, last) = (at(line.start_s), at(line.end_s).min(rows.time_s.len()));
-    Target { pass: pass.as_labelled(), first, last, rows, roll_sd: ROLL_NOISE_RAD }
+    Target { pass: as_pass, first, last, rows, roll_sd: ROLL_NOISE_RAD }
 }
 
 /// The start that the plan has: roll and roll rate, or amplitude and phase.
-fn started(target: &Target) -> [f64; 2] {
+pub(super) fn started(target: &Target) -> [f64; 2] {
     match target.pass.action {
         Action::Decay { heel_rad } => [heel_rad, 0.0],
         Action::Forced { amplitude_rad, .. } => [amplitude_rad, 0.0],
@@ -159,7 +163,7 @@ fn modelled(
         restoring: was.restoring * (1.0 + x[4]),
     };
     let scatter = [0, 1].map(|i| target.pass.scatter[i] * (1.0 + own[2 + i]));
-    let mut pass = Pass { scatter, ..target.pass.clone() };
+    let pass = Pass { scatter, ..target.pass.clone() };
     let hiding: Hiding = beside.map_or_else(Vec::new, |effect| {
         let changes = &x[SHARED..SHARED + n_beside];
         let values: Vec<f64> =
@@ -168,14 +172,27 @@ fn modelled(
         hidden.plan(&mut campaign.passes.clone());
         vec![hidden]
     });
+    off_target(target, pass, &base, &hiding, [own[0], own[1]], campaign.has_force())
+}
+
+/// Model less target of one run that starts with a roll and a roll rate, or an amplitude and a
+/// phase, by the noise: roll, and the moment where it is wanted.
+pub(super) fn off_target(
+    target: &Target,
+    mut pass: Pass,
+    base: &Base,
+    hiding: &Hiding,
+    own: [f64; 2],
+    has_force: bool,
+) -> Vec<f64> {
     let rows = &target.rows;
     let range = target.first..target.last;
     if let Action::Forced { frequency_rad_s, .. } = pass.action {
         pass.action = Action::Forced { amplitude_rad: own[0], frequency_rad_s };
         // A phase is a later start of everything but the ramp, which is over by then.
-        let motion = simulate(&pass, &base, &hiding, STEP_S, None);
+        let motion = simulate(&pass, base, hiding, STEP_S, None);
         let shift_s = own[1] / frequency_rad_s;
-        let shown = record(motion, &pass, &hiding, None);
+        let shown = record(motion, &pass, hiding, None);
         let at = |values: &[f64], i: usize| {
             super::instruments::between(values, i as f64 + shift_s / STEP_S)
         };
@@ -188,13 +205,13 @@ fn modelled(
         return roll.chain(moment).collect();
     }
     let start = Start { time_s: rows.time_s[target.first], roll: own[0], rate: own[1] };
-    let motion = simulate(&pass, &base, &hiding, STEP_S, Some(start));
-    let shown = record(motion, &pass, &hiding, None);
+    let motion = simulate(&pass, base, hiding, STEP_S, Some(start));
+    let shown = record(motion, &pass, hiding, None);
     let roll = range
         .clone()
         .zip(&shown.roll_deg)
         .map(|(i, roll)| (roll - rows.roll_deg[i]).to_radians() / target.roll_sd);
-    if !campaign.has_force() {
+    if !has_force {
         return roll.collect();
     }
     let moment = range

@@ -14,6 +14,7 @@ pub(crate) mod effect;
 pub(crate) mod effects;
 pub(crate) mod fit;
 pub(crate) mod folder;
+pub(crate) mod foretold;
 pub(crate) mod instruments;
 pub(crate) mod integrate;
 pub(crate) mod least_squares;

@@ -1,0 +1,70 @@
+//! What the true model foretells of a run that it is only told the start of.
+
+use super::base::Base;
+use super::campaign::{Campaign, Effect, hiding};
+use super::effect::Hiding;
+use super::fit::{Target, off_target, recorded, started};
+use super::instruments::ROLL_NOISE_RAD;
+use super::least_squares::{Part, minimise};
+use super::plan::Pass;
+
+/// Prior standard deviation and difference step of the start of a run [rad], [rad/s].
+const START_SD: f64 = 1.0;
+const START_STEP: f64 = 1e-5;
+
+/// Root mean square of recorded less foretold roll [deg], mean over the runs of a campaign. The
+/// true model has the values of hull and effects; of a run it knows neither the scatter nor what
+/// the day drew for it, and finds its start in the recording.
+pub(crate) fn rmse_deg(campaign: &Campaign) -> f64 {
+    let errors: Vec<f64> = campaign.passes.iter().map(|pass| error_rad(campaign, pass)).collect();
+    (errors.iter().sum::<f64>() / errors.len() as f64).to_degrees()
+}
+
+fn error_rad(campaign: &Campaign, pass: &Pass) -> f64 {
+    let effects: Vec<Effect> = campaign
+        .effects
+        .iter()
+        .filter(|effect| !is_of_each_pass(campaign, effect, pass))
+        .cloned()
+        .collect();
+    let mut acting = hiding(&effects);
+    for hidden in &mut acting {
+        hidden.plan(&mut campaign.passes.clone());
+    }
+    let lawful = Pass { scatter: [1.0; 2], ..pass.clone() };
+    let target = recorded(campaign.rows(pass, true), pass, lawful);
+    let start = started(&target);
+    let base = campaign.base_of(pass);
+    let off = |x: &[f64]| off_roll(&target, base, &acting, [x[0], x[1]]);
+    let parts = |x: &[f64], with_slopes: bool| {
+        let residuals = off(x);
+        let mut slopes = Vec::new();
+        for unknown in (0..2).filter(|_| with_slopes) {
+            let mut moved = x.to_vec();
+            moved[unknown] += START_STEP;
+            let after = off(&moved);
+            let slope = after.iter().zip(&residuals).map(|(b, a)| (b - a) / START_STEP).collect();
+            slopes.push((unknown, slope));
+        }
+        vec![Part { residuals, slopes }]
+    };
+    let n = (target.last - target.first) as f64;
+    let priors = start.map(|start| (start, START_SD));
+    (minimise(start.to_vec(), &priors, 12, parts).sum / n).sqrt() * ROLL_NOISE_RAD
+}
+
+/// Foretold less recorded roll, by the noise.
+fn off_roll(target: &Target, base: &Base, acting: &Hiding, own: [f64; 2]) -> Vec<f64> {
+    let mut off = off_target(target, target.pass.clone(), base, acting, own, false);
+    off.truncate(target.last - target.first);
+    off
+}
+
+/// Whether what an effect does in a pass was drawn for that pass.
+fn is_of_each_pass(campaign: &Campaign, effect: &Effect, pass: &Pass) -> bool {
+    let alone = std::slice::from_ref(effect);
+    let otherwise = Pass { chance: pass.chance.map(|chance| 1.0 - chance), ..pass.clone() };
+    let [here, there] =
+        [pass, &otherwise].map(|pass| campaign.rows_with(alone, pass, false).roll_deg);
+    here != there
+}
