@@ -15,7 +15,7 @@ pub(super) const ENTERS_BESIDE: f64 = 10.0;
 const ENOUGH: f64 = 0.2;
 /// Share of what an approximate effect removes, and of its evidence, that it may leave of itself:
 /// no other effect.
-const CRUMB: f64 = 0.03;
+pub(super) const CRUMB: f64 = 0.03;
 /// The same for an effect that each run has of its own, which takes up much of anything.
 const CRUMB_OF_EACH_RUN: f64 = 0.25;
 /// What an effect takes of what is left, over the logarithm of its Bayes factor, where that is

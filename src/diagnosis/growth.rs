@@ -110,6 +110,7 @@ pub(super) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
     while let Some(wild) = (0..entered.len()).find(|e| !is_plausible(survey, &last, *e)) {
         // An effect may have left its range as the others came.
         let Entered { id, log_bayes_factor, .. } = entered.remove(wild);
+        tracing::debug!(effect = id, "has left its physical range");
         implausible.push((id, log_bayes_factor));
         let mut fit = last.fit.clone();
         fit.extensions.remove(wild);
@@ -141,7 +142,7 @@ fn climb(survey: &Survey, start: Growing, banned: &[&'static str], beside: &mut 
         }
         match step.best {
             Best::Enters(settled, newest) => {
-                now.current = reseated(survey, settled, &step.noise);
+                now.current = reseated(survey, (settled, &newest), &now.entered, &step.noise);
                 now.entered.push(newest);
                 passed_over = banned.to_vec();
             }
@@ -301,10 +302,14 @@ fn step(
         .map(|one| (one.id, one.settled.log_evidence - current.log_evidence))
         .filter(|(_, log)| *log > ENTERS)
         .collect();
-    for one in &plausible {
-        let log = one.settled.log_evidence - current.log_evidence;
-        let left = excess(&leftovers(survey, &one.settled.fit));
-        tracing::debug!(effect = one.id, log, left, "tried");
+    // What each leaves is worth its cost to those who look on alone.
+    if tracing::enabled!(tracing::Level::DEBUG) {
+        for one in &plausible {
+            let log = one.settled.log_evidence - current.log_evidence;
+            let left = excess(&leftovers(survey, &one.settled.fit));
+            tracing::debug!(effect = one.id, log, left, "tried");
+        }
+        tracing::debug!(spent = survey.n_spent(), "stepped");
     }
     for (effect, log) in &implausible {
         tracing::debug!(effect, log, "outside its physical range");

@@ -1,6 +1,7 @@
 //! The shapes of what each run has of its own, chosen again once the model knows more.
 
-use super::growth::leftovers;
+use super::entry::CRUMB;
+use super::growth::{Entered, leftovers};
 use super::leftover::Leftover;
 use super::onset;
 use super::run_fit::ChannelNoise;
@@ -16,13 +17,20 @@ const WORTH: f64 = 1.0;
 /// The model with the shapes of all but its newest effect chosen again, run by run, where those
 /// were chosen while the newest was missing and structure is left: a wave that was taken for the
 /// next mode of the tank settles in no steps.
-pub(super) fn reseated(survey: &Survey, grown: Settled, noise: &[ChannelNoise]) -> Settled {
+pub(super) fn reseated(
+    survey: &Survey,
+    (grown, newest): (Settled, &Entered),
+    known: &[Entered],
+    noise: &[ChannelNoise],
+) -> Settled {
     let mut current = grown;
-    let n_known = current.fit.extensions.len().saturating_sub(1);
-    for e in 0..n_known {
+    for (e, one) in known.iter().enumerate() {
         let effect = current.fit.extensions[e].effect;
         let is_chosen = effect.scope == Scope::Run && !effect.shapes.is_empty();
-        if !is_chosen || survey.is_spent() || !is_structure_left(survey, &current) {
+        // What so little was missing for was chosen well.
+        let is_crumb = newest.log_bayes_factor < CRUMB * one.log_bayes_factor;
+        let is_asked = is_chosen && !is_crumb && !survey.is_spent();
+        if !is_asked || !is_structure_left(survey, &current) {
             continue;
         }
         let mut less = current.fit.clone();

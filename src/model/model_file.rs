@@ -142,7 +142,7 @@ mod tests {
             }],
             effects: vec![EffectModel {
                 id: "tank.residual_wave".to_owned(),
-                sets: vec![vec![1e-3, -2.0, 6.4], vec![0.0, 1.0 / 3.0, 6.0]],
+                sets: vec![vec![1e-3, -2.0, 6.4, 0.01], vec![0.0, 1.0 / 3.0, 6.0, 0.0]],
             }],
         };
         let text = model.to_toml();

@@ -208,8 +208,9 @@ pub(super) mod tests {
                     let slopes: Vec<f64> =
                         there.iter().zip(&without.here).map(|(t, n)| (t - n) / by).collect();
                     let off = rms(slopes.iter().zip(told).map(|(s, t)| s - t));
-                    let off = off / rms(slopes.iter().copied());
-                    assert!(off < 0.02, "{}, {kind:?}: off by {off:.5}", tried.effect.id);
+                    // What does nothing in such a run must say so.
+                    let all = rms(slopes.iter().copied());
+                    assert!(off <= 0.02 * all, "{}, {kind:?}: off by {off}", tried.effect.id);
                 }
             }
         }
