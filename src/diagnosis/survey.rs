@@ -183,14 +183,8 @@ impl Survey {
         };
         let laws: Vec<Law> = self.conditions.iter().map(law).collect::<Option<_>>()?;
         let state = |run: usize| {
-            if let Some(place) = places[run] {
-                return fit.states[place].clone();
-            }
-            let observation = &self.runs[run];
-            let law = laws[self.condition_of[run]].at(observation.at.froude);
-            let [natural_rad_s, b1_per_s, b3_s] = law;
-            let base = Base { natural_rad_s, b1_per_s, b3_s, log_scale: fit.log_scale };
-            RunState { own: observation.start.clone(), base }
+            let known = places[run].map(|place| fit.states[place].clone());
+            known.unwrap_or_else(|| self.lawful(&laws, fit.log_scale, run))
         };
         let extensions = fit.extensions.iter().map(|one| one.of_runs(self, other, &places));
         Some(Fit {
@@ -199,6 +193,15 @@ impl Survey {
             states: (0..self.runs.len()).map(state).collect(),
             laws,
         })
+    }
+
+    /// A run as its record shows it, under the law of its condition.
+    pub(super) fn lawful(&self, laws: &[Law], log_scale: f64, run: usize) -> RunState {
+        let observation = &self.runs[run];
+        let law = laws[self.condition_of[run]].at(observation.at.froude);
+        let [natural_rad_s, b1_per_s, b3_s] = law;
+        let base = Base { natural_rad_s, b1_per_s, b3_s, log_scale };
+        RunState { own: observation.start.clone(), base }
     }
 
     /// The law through the numbers of a condition's runs.

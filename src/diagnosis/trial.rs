@@ -7,7 +7,7 @@ use super::run_fit::ChannelNoise;
 use super::score::Scored;
 use super::settle::{Settled, settle, settle_further};
 use super::survey::{Extension, Fit, Survey};
-use crate::model::{Acts, Scope, effects};
+use crate::model::{Acts, Effect, Layer, Scope, effects};
 
 /// A candidate fitted in full.
 pub(super) struct Tried {
@@ -71,6 +71,11 @@ pub(super) fn with(
         let exchanged = values
             .and_then(|values| effects::exchanged(effect, base, &survey.runs[run].at, values));
         acting.states[run].base = exchanged.unwrap_or(*base);
+        // Without its ringing a force that is smaller than that says nothing of when it changes
+        // its sign; the other runs do.
+        if is_ringing(effect) && slot.is_some() {
+            acting.states[run] = survey.lawful(&fit.laws, fit.log_scale, run);
+        }
     }
     acting.extensions.push(extension);
     let is_exchange = (0..survey.runs.len()).any(|r| acting.states[r].base != fit.states[r].base);
@@ -79,6 +84,11 @@ pub(super) fn with(
     } else {
         idle
     }
+}
+
+/// Whether an effect rings whenever the rod's force changes its sign.
+fn is_ringing(effect: &Effect) -> bool {
+    effect.layer == Layer::Exciter && matches!(effect.acts, Acts::Chain(..))
 }
 
 /// Share of its range within which a shape is held at an edge, and would rather be outside.
