@@ -1,14 +1,16 @@
 //! The grown model looked back on: effects that are not missed leave, others may take their place.
 
+use std::cell::OnceCell;
+
 use super::alike::{SAME, contains, is_approximate, is_form_of, is_same};
-use super::entry::is_crumb_of;
+use super::entry::{is_crumb_of, is_trifle_of};
 use super::growth::{ENTERS, Entered, excess, leftovers, sure_excess};
 use super::run_fit::ChannelNoise;
 use super::score::{Scored, score};
 use super::settle::{Settled, settle};
 use super::survey::Survey;
 use super::trial::{Tried, fit_all, is_newest_plausible, with};
-use crate::model::effects;
+use crate::model::{Scope, effects};
 
 /// Takes each effect out again: one that is missed too little leaves, and what could stand in its
 /// place, the others given, is told with it.
@@ -30,17 +32,23 @@ pub(super) fn check_backward(
         let taken = less.extensions.remove(e);
         let without = settle(survey, less, noise);
         let missed = current.log_evidence - without.log_evidence;
-        // What came before an approximate effect may have taken up a part of it.
-        let removed = || {
-            let left = [&without, &current].map(|of| excess(&leftovers(survey, &of.fit)));
-            left[0] - left[1]
+        let looked = OnceCell::new();
+        let looked = || {
+            looked.get_or_init(|| {
+                let left = [&without, &current].map(|of| excess(&leftovers(survey, &of.fit)));
+                let removed = left[0] - left[1];
+                Entered { log_bayes_factor: missed, removed, ..entered[e].clone() }
+            })
         };
-        let is_crumb = entered[e + 1..].iter().any(|later| is_approximate(later.id)) && {
-            let looked =
-                Entered { log_bayes_factor: missed, removed: removed(), ..entered[e].clone() };
-            let scope = Some(taken.effect.scope);
-            entered[e + 1..].iter().any(|later| is_crumb_of(later, &looked, scope))
-        };
+        // What came before an approximate effect may have taken up a part of it; a run that few
+        // have, or a trifle, may be a part of one that was known before it, too.
+        let scope = taken.effect.scope;
+        let is_crumb = entered.iter().enumerate().any(|(k, other)| {
+            let is_asked = k > e || (k < e && scope == Scope::OddRun);
+            let is_crumb = is_asked && is_approximate(other.id);
+            (k != e && is_trifle_of(other, missed))
+                || (is_crumb && is_crumb_of(other, looked(), Some(scope)))
+        });
         if missed < ENTERS || is_crumb {
             current = without;
             entered.remove(e);

@@ -24,6 +24,9 @@ const OF_LEFTOVER: f64 = 1.0;
 /// Share of the evidence of an effect below which another may be a want of its form.
 pub(super) const CRUMB_OF_EVIDENCE: f64 = 0.01;
 
+/// Share of the evidence of an approximate effect to which its form is not known; by judgement.
+const TRIFLE: f64 = 1e-4;
+
 /// What becomes of the best effect.
 pub(super) enum Best {
     /// There is none.
@@ -100,6 +103,12 @@ pub(super) fn is_crumb_of(known: &Entered, newest: &Entered, scope: Option<Scope
     // What only few runs may have takes up little of anything.
     let is_odd_of_form = scope == Some(Scope::OddRun) && is_approximate(known.id);
     is_of_form || ((is_of_each_run || is_odd_of_form) && is_little)
+}
+
+/// Whether evidence is so little beside that of an approximate effect that its form is not known as
+/// well, whatever the evidence is of.
+pub(super) fn is_trifle_of(known: &Entered, log_bayes_factor: f64) -> bool {
+    is_approximate(known.id) && log_bayes_factor < TRIFLE * known.log_bayes_factor
 }
 
 /// Whether two effects are of one layer, where the form of one may want what the other has.
