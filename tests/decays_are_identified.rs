@@ -61,6 +61,7 @@ fn decay(time_s: Vec<f64>, value: Vec<f64>) -> Run {
         speed_m_s: None,
         roll: Series { time_s, value },
         drive: Series::default(),
+        speed: Series::default(),
         lead: Series::default(),
         still: None,
         excitation_rad_s: None,
@@ -239,6 +240,7 @@ proptest! {
         let run = Run {
             kind: RunKind::Forced,
             drive: Series { time_s: time_s.clone(), value: moment.collect() },
+            speed: Series::default(),
             excitation_rad_s: repeats.then_some(5.0),
             timing: Timing::default(),
             ..decay(time_s.clone(), roll.collect())

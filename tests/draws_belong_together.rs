@@ -40,6 +40,7 @@ fn run(hidden: impl Fn(f64, f64) -> f64) -> Run {
         speed_m_s: None,
         roll: series,
         drive: Series::default(),
+        speed: Series::default(),
         lead: Series::default(),
         still: None,
         excitation_rad_s: None,

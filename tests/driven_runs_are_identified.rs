@@ -45,6 +45,7 @@ fn whole(pass: &SimulatedPass) -> Run {
         speed_m_s: None,
         drive: series(pass, Quantity::Force, REST_S),
         lead: Series::default(),
+        speed: Series::default(),
         still: Some(Still {
             start_s: 0.0,
             end_s: REST_S,

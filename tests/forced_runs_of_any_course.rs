@@ -106,6 +106,7 @@ fn run(roll: &[f64], moment: &[f64], time_s: &[f64], rng: &mut ChaCha8Rng) -> Ru
         speed_m_s: None,
         roll: series(noisy(roll, ROLL_NOISE_RAD).iter().map(|r| r + 0.004).collect()),
         drive: series(noisy(moment, MOMENT_NOISE_N_M)),
+        speed: Series::default(),
         lead: Series::default(),
         still: None,
         excitation_rad_s: None,

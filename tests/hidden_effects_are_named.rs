@@ -337,3 +337,27 @@ fn a_loose_pin_is_named_by_its_ringing_and_by_what_the_roll_lags() {
     let (_, verdict) = diagnosed(RunSet::Forced, &["exciter.pin_play"], 2.0, seed);
     assert_eq!(named(&verdict), ["exciter.pin_play"]);
 }
+
+#[test]
+fn a_carriage_that_wobbles_is_named_from_its_own_record_where_the_roll_hardly_shows_it() {
+    let first = drawn_seed("a wobbling carriage");
+    let wobble = |seed: u64| {
+        let hidden = vec!["tank.unsteady_speed".to_owned()];
+        let asked = Asked { set: RunSet::Speeds, hidden, size: 0.5, seed, scatter: SCATTER };
+        let [share, hz] = Campaign::draw(&asked).effects[0].values[..] else { panic!("values") };
+        (hz > 0.0).then_some((seed, share, hz))
+    };
+    // Half of the unsteady carriages settle late instead.
+    let (seed, share, hz) = (first..).find_map(wobble).expect("a wobble");
+    let (_, verdict) = diagnosed(RunSet::Speeds, &["tank.unsteady_speed"], 0.5, seed);
+    assert_eq!(named(&verdict), ["tank.unsteady_speed"]);
+    let parameters = verdict.json["causes"][0]["parameters"].as_array().expect("a list");
+    let of = |symbol: &str| -> Vec<f64> {
+        let told = parameters.iter().filter(|parameter| parameter["symbol"] == symbol);
+        told.map(|parameter| parameter["mean"].as_f64().expect("a number")).collect()
+    };
+    let (shares, frequencies) = (of("dv"), of("f"));
+    assert!(frequencies.len() > 5, "{parameters:?}");
+    assert!(frequencies.iter().all(|told| (told - hz).abs() < 0.03), "{hz} Hz: {frequencies:?}");
+    assert!(shares.iter().all(|told| (told / share - 1.0).abs() < 0.1), "{share}: {shares:?}");
+}

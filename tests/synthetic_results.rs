@@ -188,17 +188,17 @@ fn identified(
 fn found(truth: &Truth, froude: f64, roll: Series, moment_n_m: &[f64]) -> Run {
     let (forced, force) = (truth.forced(), Some(0.02));
     let still = Still { start_s: 4.0, end_s: 20.9, roll_rad: 0.001, roll_sd_rad: 0.0, force };
-    let n = if forced { moment_n_m.len() } else { 0 };
-    let force_n = moment_n_m[..n].iter().map(|moment| moment / 0.43).collect();
+    let force_n: Vec<f64> = moment_n_m.iter().filter(|_| forced).map(|m| m / 0.43).collect();
     Run {
         kind: if forced { RunKind::Forced } else { RunKind::Decay },
         start_s: roll.time_s[0],
         end_s: roll.time_s[roll.time_s.len() - 1],
         end: if forced { RunEnd::ExcitationChanged } else { RunEnd::LostInNoise },
         speed_m_s: Some(froude * 4.952),
-        drive: Series { time_s: roll.time_s[..n].to_vec(), value: force_n },
+        drive: Series { time_s: roll.time_s[..force_n.len()].to_vec(), value: force_n },
         roll,
         lead: Series::default(),
+        speed: Series::default(),
         still: Some(still),
         excitation_rad_s: forced.then_some(truth.excitation_rad_s),
         timing: Timing::default(),

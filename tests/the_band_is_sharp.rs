@@ -92,6 +92,7 @@ fn the_band_at_five_degrees_is_hardly_wider_than_that_of_a_fit_that_knows_the_la
                 speed_m_s: None,
                 roll: Series { time_s, value },
                 drive: Series::default(),
+                speed: Series::default(),
                 lead: Series::default(),
                 still: None,
                 excitation_rad_s: None,

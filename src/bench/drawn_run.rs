@@ -121,6 +121,7 @@ impl DrawnRun {
             speed_m_s: None,
             roll: Series { time_s, value },
             drive: Series::default(),
+            speed: Series::default(),
             lead: Series::default(),
             still: None,
             excitation_rad_s: None,

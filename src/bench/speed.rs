@@ -66,6 +66,7 @@ pub fn decay(n_samples: usize, per_period: f64) -> Run {
         speed_m_s: None,
         roll: Series { time_s, value },
         drive: Series::default(),
+        speed: Series::default(),
         lead: Series::default(),
         still: None,
         excitation_rad_s: None,

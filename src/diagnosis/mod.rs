@@ -41,6 +41,7 @@ mod survey;
 mod trial;
 mod unexplained;
 mod verdict;
+mod wavering;
 mod whole;
 
 pub use correction::{Corrected, corrected};

@@ -3,6 +3,7 @@
 use super::clipping::middle;
 use super::facts;
 use super::repeating;
+use super::wavering::Wavering;
 use crate::campaign::Campaign;
 use crate::inverse::forced::response::SteadyResponse;
 use crate::inverse::record::Record;
@@ -36,6 +37,8 @@ pub struct Observation {
     pub moment_n_m: Vec<f64>,
     /// Roll before its time zero.
     pub lead: Lead,
+    /// How the carriage left its speed; none where it kept it.
+    pub wavering: Option<Wavering>,
     /// Noise of one value of each channel, from neighbouring values [rad, N m].
     pub rough_noise: [f64; 2],
     /// How far off the times of the roll may be, and the time between it and the moment, where that
@@ -174,6 +177,7 @@ impl Observation {
             facts,
             at,
             lead,
+            wavering: Wavering::of(&run.run.speed),
             origin_s: record.origin_s,
             roll_time_s: record.time_s.clone(),
             roll_rad: record.roll_rad.clone(),

@@ -12,6 +12,7 @@ use super::reversed::{self, Reversed};
 use super::settle::Settled;
 use super::survey::{N_LAW, Survey};
 use super::unexplained::{Unexplained, unexplained};
+use super::wavering;
 use crate::campaign::Tank;
 use crate::inverse::estimate::Estimate;
 use crate::model::effects;
@@ -156,6 +157,9 @@ pub(super) fn told(
     causes.extend(shown.causes());
     if survey.runs.iter().any(|run| run.at.kind == RunKind::Forced) {
         causes.extend(reversed::cause(reversed));
+    }
+    if !causes.iter().any(|cause| cause.effect == wavering::EFFECT) {
+        causes.extend(wavering::cause(survey));
     }
     let verdict = if untold {
         Verdict::Unexplained

@@ -135,6 +135,7 @@ mod tests {
             speed_m_s: None,
             roll: Series::default(),
             drive: Series { time_s, value },
+            speed: Series::default(),
             lead: Series::default(),
             still: None,
             excitation_rad_s: Some(5.0),

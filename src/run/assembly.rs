@@ -130,6 +130,7 @@ impl Stretch<'_> {
             end: self.end,
             speed_m_s,
             drive: records.drive.track.series(start_s, end_s),
+            speed: records.carriage.track.series(start_s, end_s),
             lead: records.roll.series(start_s - LEAD_S, start_s.next_down()),
             roll,
             still: records.still_before(start_s, mean_rad, reach_rad),

@@ -125,6 +125,8 @@ pub struct Run {
     pub lead: Series,
     /// Rod force [N] or exciting moment [N m] as recorded, over the same stretch, if one was.
     pub drive: Series,
+    /// Carriage speed [m/s] over the same stretch, if one was recorded.
+    pub speed: Series,
     /// The still stretch before the run, when there was one.
     pub still: Option<Still>,
     /// Frequency of the excitation [rad/s] of a forced run that repeats, as the run finder saw it;
@@ -159,6 +161,7 @@ pub struct Rejection {
 }
 
 /// What the run finder tells as samples arrive.
+#[expect(clippy::large_enum_variant, reason = "each is taken apart as it comes")]
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
     /// A run has ended and can be identified.
