@@ -177,7 +177,7 @@ impl Observation {
             facts,
             at,
             lead,
-            wavering: Wavering::of(&run.run.speed),
+            wavering: Wavering::of(&run.run.speed, run.froude),
             origin_s: record.origin_s,
             roll_time_s: record.time_s.clone(),
             roll_rad: record.roll_rad.clone(),

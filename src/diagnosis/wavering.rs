@@ -25,6 +25,8 @@ const FASTEST_HZ: f64 = 2.0;
 const FINENESS: f64 = 10.0;
 /// Rate to which a record is averaged [Hz].
 const RATE_HZ: f64 = 20.0;
+/// Froude number below which a carriage rests, and its channel shows no more than its zero [-].
+const SLOWEST_FROUDE: f64 = 0.01;
 /// Least noise of a speed, as a share of it: what is read in coarse steps has none between them.
 const LEAST_NOISE: f64 = 1e-4;
 /// Averages below which a record says nothing.
@@ -46,12 +48,13 @@ enum Course {
 }
 
 impl Wavering {
-    /// Looks at the speed [m/s] of a run; none where it is kept, or was not recorded.
-    pub(super) fn of(speed: &Series) -> Option<Self> {
+    /// Looks at the speed [m/s] of a run at a Froude number [-]; none where it is kept, or was not
+    /// recorded.
+    pub(super) fn of(speed: &Series, froude: f64) -> Option<Self> {
         let [times, speeds] = [&speed.time_s, &speed.value].map(|of| thinned(&speed.time_s, of));
         let n = speeds.len();
         let mean_m_s = speeds.iter().sum::<f64>() / n.max(1) as f64;
-        if n < FEWEST || mean_m_s.abs() < f64::MIN_POSITIVE {
+        if n < FEWEST || froude < SLOWEST_FROUDE || mean_m_s.abs() < f64::MIN_POSITIVE {
             return None;
         }
         let off: Vec<f64> = speeds.iter().map(|v| v / mean_m_s - 1.0).collect();
@@ -163,7 +166,7 @@ mod tests {
 
     #[test]
     fn a_carriage_that_wobbles_is_told_with_share_and_frequency() {
-        let found = Wavering::of(&recorded(|t| 0.03 * (TAU * 0.4 * t + 1.0).sin()));
+        let found = Wavering::of(&recorded(|t| 0.03 * (TAU * 0.4 * t + 1.0).sin()), 0.2);
         let found = found.expect("a wobble of 3 %");
         assert!((found.share.mean - 0.03).abs() < 1e-3, "{found:?}");
         let Course::Wobbles { frequency_hz } = found.course else { panic!("{found:?}") };
@@ -172,7 +175,7 @@ mod tests {
 
     #[test]
     fn a_carriage_that_settles_is_told_with_its_time() {
-        let found = Wavering::of(&recorded(|t| -0.1 * (-t / 2.0).exp()));
+        let found = Wavering::of(&recorded(|t| -0.1 * (-t / 2.0).exp()), 0.2);
         let found = found.expect("a speed that settles");
         assert_eq!(found.course, Course::Settles { time_s: 2.0 });
         // The mean that it is a share of is a little low itself.
@@ -181,8 +184,16 @@ mod tests {
 
     #[test]
     fn a_carriage_that_keeps_its_speed_to_half_a_hundredth_is_told_of_no_more() {
-        assert_eq!(Wavering::of(&recorded(|_| 0.0)), None);
-        assert_eq!(Wavering::of(&recorded(|t| 0.005 * (TAU * 0.4 * t).sin())), None);
-        assert_eq!(Wavering::of(&Series::default()), None);
+        assert_eq!(Wavering::of(&recorded(|_| 0.0), 0.2), None);
+        assert_eq!(Wavering::of(&recorded(|t| 0.005 * (TAU * 0.4 * t).sin()), 0.2), None);
+        assert_eq!(Wavering::of(&Series::default(), 0.2), None);
+    }
+
+    #[test]
+    fn a_carriage_at_rest_shows_no_more_than_its_zero() {
+        let mut creeping = recorded(|t| 0.2 * t);
+        creeping.value.iter_mut().for_each(|speed| *speed *= 1e-3);
+        assert_eq!(Wavering::of(&creeping, 0.0), None);
+        assert!(Wavering::of(&creeping, 0.2).is_some());
     }
 }
