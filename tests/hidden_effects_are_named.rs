@@ -361,3 +361,28 @@ fn a_carriage_that_wobbles_is_named_from_its_own_record_where_the_roll_hardly_sh
     assert!(frequencies.iter().all(|told| (told - hz).abs() < 0.03), "{hz} Hz: {frequencies:?}");
     assert!(shares.iter().all(|told| (told / share - 1.0).abs() < 0.1), "{share}: {shares:?}");
 }
+
+#[test]
+fn at_resonance_a_loose_pin_rings_louder_than_the_rod_pushes_and_is_named() {
+    let (_, verdict) = diagnosed(RunSet::Forced, &["exciter.pin_play"], 2.0, 872);
+    assert_eq!(named(&verdict), ["exciter.pin_play"]);
+}
+
+#[test]
+fn samples_that_all_channels_lost_leave_no_trace_in_the_moment() {
+    let (_, verdict) = diagnosed(RunSet::Forced, &["instrument.dropped_samples"], 2.0, 853);
+    assert_eq!(named(&verdict), ["instrument.dropped_samples"]);
+}
+
+#[test]
+fn beside_water_in_the_hull_a_trifle_gets_no_name() {
+    let (_, verdict) = diagnosed(RunSet::Forced, &["restoring.free_surface"], 2.0, 874);
+    assert_eq!(named(&verdict), ["restoring.free_surface"]);
+}
+
+#[test]
+fn waves_are_sought_at_other_modes_once_the_damping_beside_them_is_known() {
+    let hidden = ["tank.residual_wave", "damping.vortex_history"];
+    let (_, verdict) = diagnosed(RunSet::Speeds, &hidden, 2.0, 4392);
+    assert_eq!(named(&verdict), hidden);
+}

@@ -138,11 +138,8 @@ pub(super) fn contains(rival: &str, favourite: &str) -> bool {
 /// ringing.
 pub(super) fn is_approximate(id: &str) -> bool {
     effects::effect(id).is_some_and(|effect| {
-        matches!(effect.layer, Layer::Tank)
-            || matches!(
-                (effect.layer, effect.acts),
-                (_, Acts::Lagging(_)) | (Layer::Exciter, Acts::Chain(..))
-            )
+        let remembers = matches!(effect.acts, Acts::Lagging(_));
+        effect.layer == Layer::Tank || remembers || effect.is_ringing()
     })
 }
 

@@ -1,6 +1,6 @@
 //! The grown model looked back on: effects that are not missed leave, others may take their place.
 
-use std::cell::OnceCell;
+use std::cell::LazyCell;
 
 use super::alike::{SAME, contains, is_approximate, is_form_of, is_same};
 use super::entry::{is_crumb_of, is_trifle_of};
@@ -32,22 +32,20 @@ pub(super) fn check_backward(
         let taken = less.extensions.remove(e);
         let without = settle(survey, less, noise);
         let missed = current.log_evidence - without.log_evidence;
-        let looked = OnceCell::new();
-        let looked = || {
-            looked.get_or_init(|| {
-                let left = [&without, &current].map(|of| excess(&leftovers(survey, &of.fit)));
-                let removed = left[0] - left[1];
-                Entered { log_bayes_factor: missed, removed, ..entered[e].clone() }
-            })
-        };
+        let looked = LazyCell::new(|| {
+            let left = [&without, &current].map(|of| excess(&leftovers(survey, &of.fit)));
+            let removed = left[0] - left[1];
+            Entered { log_bayes_factor: missed, removed, ..entered[e].clone() }
+        });
         // What came before an approximate effect may have taken up a part of it; a run that few
         // have, or a trifle, may be a part of one that was known before it, too.
         let scope = taken.effect.scope;
         let is_crumb = entered.iter().enumerate().any(|(k, other)| {
-            let is_asked = k > e || (k < e && scope == Scope::OddRun);
-            let is_crumb = is_asked && is_approximate(other.id);
-            (k != e && is_trifle_of(other, missed))
-                || (is_crumb && is_crumb_of(other, looked(), Some(scope)))
+            let is_asked = k > e || scope == Scope::OddRun;
+            k != e
+                && is_approximate(other.id)
+                && (is_trifle_of(other, missed)
+                    || is_asked && is_crumb_of(other, &looked, Some(scope)))
         });
         if missed < ENTERS || is_crumb {
             current = without;

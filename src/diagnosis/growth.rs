@@ -142,7 +142,7 @@ fn climb(survey: &Survey, start: Growing, banned: &[&'static str], beside: &mut 
         }
         match step.best {
             Best::Enters(settled, newest) => {
-                now.current = reseated(survey, (settled, &newest), &now.entered, &step.noise);
+                now.current = reseated(survey, settled, &now.entered, &newest, &step.noise);
                 now.entered.push(newest);
                 passed_over = banned.to_vec();
             }

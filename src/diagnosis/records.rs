@@ -9,7 +9,7 @@ use crate::model::effects;
 use crate::model::{Acts, Effect, Facts, Recurs, Seen};
 
 /// Least logarithm of a Bayes factor over all runs.
-const SURE: f64 = 14.0;
+pub(super) const SURE: f64 = 14.0;
 /// Deviation [Hz], and as a share, within which two records show one line.
 const ONE_LINE_HZ: f64 = 0.15;
 const ONE_LINE_SHARE: f64 = 0.02;

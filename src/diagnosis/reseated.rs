@@ -11,7 +11,8 @@ use super::survey::Survey;
 use super::trial::with;
 use crate::model::Scope;
 
-/// Logarithm of the evidence that a choice must gain to be worth its change.
+/// Logarithm of the evidence that a choice must gain to be worth its change: less is what a fit
+/// that settles from elsewhere finds by itself.
 const WORTH: f64 = 1.0;
 
 /// The model with the shapes of all but its newest effect chosen again, run by run, where those
@@ -19,8 +20,9 @@ const WORTH: f64 = 1.0;
 /// next mode of the tank settles in no steps.
 pub(super) fn reseated(
     survey: &Survey,
-    (grown, newest): (Settled, &Entered),
+    grown: Settled,
     known: &[Entered],
+    newest: &Entered,
     noise: &[ChannelNoise],
 ) -> Settled {
     let mut current = grown;

@@ -7,7 +7,7 @@ use super::run_fit::ChannelNoise;
 use super::score::Scored;
 use super::settle::{Settled, settle, settle_further};
 use super::survey::{Extension, Fit, Survey};
-use crate::model::{Acts, Effect, Layer, Scope, effects};
+use crate::model::{Acts, Scope, effects};
 
 /// A candidate fitted in full.
 pub(super) struct Tried {
@@ -73,7 +73,7 @@ pub(super) fn with(
         acting.states[run].base = exchanged.unwrap_or(*base);
         // Without its ringing a force that is smaller than that says nothing of when it changes
         // its sign; the other runs do.
-        if is_ringing(effect) && slot.is_some() {
+        if effect.is_ringing() && slot.is_some() {
             acting.states[run] = survey.lawful(&fit.laws, fit.log_scale, run);
         }
     }
@@ -84,11 +84,6 @@ pub(super) fn with(
     } else {
         idle
     }
-}
-
-/// Whether an effect rings whenever the rod's force changes its sign.
-fn is_ringing(effect: &Effect) -> bool {
-    effect.layer == Layer::Exciter && matches!(effect.acts, Acts::Chain(..))
 }
 
 /// Share of its range within which a shape is held at an edge, and would rather be outside.

@@ -158,8 +158,11 @@ pub(super) fn told(
     if survey.runs.iter().any(|run| run.at.kind == RunKind::Forced) {
         causes.extend(reversed::cause(reversed));
     }
-    if !causes.iter().any(|cause| cause.effect == wavering::EFFECT) {
-        causes.extend(wavering::cause(survey));
+    if !causes.iter().any(|cause| cause.effect == wavering::EFFECT)
+        && let Some(recorded) = wavering::cause(survey)
+    {
+        suspects.retain(|id| *id != recorded.effect);
+        causes.push(recorded);
     }
     let verdict = if untold {
         Verdict::Unexplained

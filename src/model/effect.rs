@@ -338,6 +338,11 @@ impl Effect {
         self.strengths.len() + self.shapes.len()
     }
 
+    /// Whether a rod's pin rings whenever its force changes sign.
+    pub fn is_ringing(&self) -> bool {
+        self.layer == Layer::Exciter && matches!(self.acts, Acts::Chain(..))
+    }
+
     /// Parameter number `k`, strengths first.
     pub fn parameter(&self, k: usize) -> &'static Parameter {
         if k < self.strengths.len() {
@@ -373,9 +378,12 @@ pub fn forced(run: &Circumstances) -> bool {
     run.kind == RunKind::Forced
 }
 
+/// Froude number up to which a carriage rests [-]: a channel's zero is no speed.
+pub const UNDER_WAY_FROUDE: f64 = 0.01;
+
 /// Only a run under way shows it.
 pub fn under_way(run: &Circumstances) -> bool {
-    run.froude > 0.01
+    run.froude > UNDER_WAY_FROUDE
 }
 
 /// Only a run with a recorded moment shows it.

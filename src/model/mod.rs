@@ -25,5 +25,6 @@ mod slopes;
 
 pub use effect::{
     Acts, Circumstances, Clip, Effect, Facts, Instant, Layer, Line, Parameter, Recurs, Scope, Seen,
+    UNDER_WAY_FROUDE,
 };
 pub use term::{Base, Columns, N_BASE, Term};

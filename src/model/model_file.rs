@@ -118,7 +118,10 @@ impl ModelFile {
                 .collect();
             if sets.iter().any(|set| set.len() != known.n_parameters()) {
                 let n = known.n_parameters();
-                return Err(format!("model.toml: a set of {id} has {n} numbers"));
+                return Err(format!(
+                    "model.toml: a set of {id} has {n} numbers; hint: `rolltank diagnose \
+                     --write-model` writes the file as this program reads it"
+                ));
             }
             model.effects.push(EffectModel { id, sets });
         }

@@ -57,6 +57,7 @@ impl Term {
 pub(super) mod tests {
     use super::*;
     use crate::model::course::{Course, N_COURSE};
+    use crate::model::effect::Instant;
     use crate::model::effects;
     use crate::model::free::{Decay, n_stirred};
     use crate::model::imposed::Imposed;
@@ -109,6 +110,26 @@ pub(super) mod tests {
         let times: Vec<f64> = (0..600).map(|k| -6.0 + 0.01 * f64::from(k)).collect();
         let rolls: Vec<f64> = times.iter().map(|t| 0.2 * (t + 4.0).clamp(0.0, 1.0)).collect();
         Lead::new(&times, &rolls, 6.9)
+    }
+
+    /// A run's instants in a steady swing `phi = sin w t` with the moment `cos w t` [N m].
+    pub(in crate::model) fn swing(run: &Circumstances, n: u32, step_s: f64) -> Vec<Instant<'_>> {
+        let rad_s = run.rolling_rad_s;
+        let at = |k| {
+            let time_s = f64::from(k) * step_s;
+            let (sin, cos) = (rad_s * time_s).sin_cos();
+            Instant {
+                time_s,
+                roll_rad: sin,
+                rate_rad_per_s: rad_s * cos,
+                acceleration_rad_per_s2: -rad_s * rad_s * sin,
+                moment_n_m: cos,
+                natural_rad_s: rad_s,
+                b1_per_s: run.b1_per_s,
+                run,
+            }
+        };
+        (0..n).map(at).collect()
     }
 
     /// Readings and columns under the numbers.

@@ -14,7 +14,7 @@ const MOST: usize = 41;
 
 /// Frequencies [rad/s] of the antisymmetric modes, lowest first: a model amid the tank is rolled by
 /// these, the odd ones of `w_n^2 = k g tanh(k d)`, `k = n pi/width`.
-pub fn all(section: &Section, gravity_m_s2: f64) -> impl Iterator<Item = f64> + Clone {
+pub fn all(section: &Section, gravity_m_s2: f64) -> impl Iterator<Item = f64> {
     let Section { width_m, depth_m } = *section;
     (1..=MOST).step_by(2).map(move |n| {
         let number_per_m = n as f64 * std::f64::consts::PI / width_m;

@@ -28,8 +28,8 @@ const SHARED_STEP: [f64; SHARED] = [1e-3, 1e-2, 1e-2, 1e-5, 1e-5];
 /// Unknowns of one run: roll and roll rate at its start, or amplitude and phase; two of scatter.
 const OWN: usize = 4;
 /// Prior standard deviation and difference step of the start of a run [rad], [rad/s].
-const START_SD: f64 = 1.0;
-const START_STEP: f64 = 1e-5;
+pub(super) const START_SD: f64 = 1.0;
+pub(super) const START_STEP: f64 = 1e-5;
 
 /// Misfit below which two effects are one class on the runs at hand (EFFECTS.md, section 6).
 pub(crate) const INDISTINGUISHABLE: f64 = 12.0;

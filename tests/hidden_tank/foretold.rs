@@ -3,14 +3,10 @@
 use super::base::Base;
 use super::campaign::{Campaign, Effect, hiding};
 use super::effect::Hiding;
-use super::fit::{Target, off_target, recorded, started};
+use super::fit::{START_SD, START_STEP, Target, off_target, recorded, started};
 use super::instruments::ROLL_NOISE_RAD;
 use super::least_squares::{Part, minimise};
 use super::plan::Pass;
-
-/// Prior standard deviation and difference step of the start of a run [rad], [rad/s].
-const START_SD: f64 = 1.0;
-const START_STEP: f64 = 1e-5;
 
 /// Root mean square of recorded less foretold roll [deg], mean over the runs of a campaign. The
 /// true model has the values of hull and effects; of a run it knows neither the scatter nor what

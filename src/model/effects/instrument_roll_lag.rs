@@ -46,7 +46,7 @@ fn lag<N: Number>(all: &[Instant<'_, N>], p: &[N]) -> Vec<N> {
 mod tests {
     use super::*;
     use crate::model::effect::Circumstances;
-    use crate::model::term::tests::run;
+    use crate::model::term::tests::{run, swing};
     use crate::run::RunKind;
 
     #[test]
@@ -54,21 +54,7 @@ mod tests {
         // `phi = sin w t` leaves the filter as `Im exp(i w t) / (1 + i w tau)`.
         let (rad_s, tau_s, step_s) = (10.0_f64, 1e-3, 0.02);
         let run = Circumstances { rolling_rad_s: rad_s, ..run(RunKind::Forced) };
-        let at = |k: usize| {
-            let time_s = k as f64 * step_s;
-            let (sin, cos) = (rad_s * time_s).sin_cos();
-            Instant {
-                time_s,
-                roll_rad: sin,
-                rate_rad_per_s: rad_s * cos,
-                acceleration_rad_per_s2: -rad_s * rad_s * sin,
-                moment_n_m: 0.0,
-                natural_rad_s: rad_s,
-                b1_per_s: 0.3,
-                run: &run,
-            }
-        };
-        let all: Vec<Instant<'_>> = (0..200).map(at).collect();
+        let all = swing(&run, 200, step_s);
         let slow = rad_s * tau_s;
         for (instant, lost) in all.iter().zip(lag(&all, &[tau_s])) {
             let (sin, cos) = (rad_s * instant.time_s).sin_cos();
