@@ -52,7 +52,7 @@ impl<'a> Made<'a> {
             let readings = predict(&run, &state, &terms);
             let (roll, moment) = readings.split_at(run.roll_time_s.len());
             (run.roll_rad, run.moment_n_m) = (roll.to_vec(), moment.to_vec());
-            summaries.push(summarise(&run, &state, &terms, &[], &noise));
+            summaries.push(summarise(&run, &state, &terms, &[], &noise, None));
             observed.push(run);
             runs.push((state, noise));
         }
@@ -212,7 +212,7 @@ fn answer(made: &Made, rival: &Known, start: &Fit, rounds: usize) -> Answer {
                 let (now, then) = (there.terms(r), fit.terms(r));
                 let state = &fit.states[r];
                 grown.spend(r, &now, state.own.len() + N_BASE + n_values(&now));
-                let mut summary = summarise(&grown.runs[r], state, &now, &[], noise);
+                let mut summary = summarise(&grown.runs[r], state, &now, &[], noise, None);
                 let mut moved_by = vec![state.base.log_scale - fit.log_scale];
                 for (now, then) in now.iter().zip(&then) {
                     moved_by.extend(now.values.iter().zip(&then.values).map(|(n, t)| n - t));

@@ -49,7 +49,7 @@ fn predicted(survey: &Survey, trained: &Fit, run: usize, noise: &ChannelNoise) -
     state.base.log_scale = trained.log_scale;
     let white = ChannelNoise { correlation: [0.0; 2], ..*noise };
     for _ in 0..3 {
-        let own = summarise(observation, &state, &terms, &[], &white);
+        let own = summarise(observation, &state, &terms, &[], &white, None);
         let nothing = vec![0.0; own.eliminated.rest.n() - 1];
         let steps = own.eliminated.back(&nothing);
         state.own.resize(steps.len(), 0.0);

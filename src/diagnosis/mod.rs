@@ -11,6 +11,7 @@ mod backward;
 mod clipping;
 mod cores;
 mod correction;
+mod cost;
 mod elimination;
 mod entry;
 mod facts;

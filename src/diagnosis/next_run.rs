@@ -321,7 +321,7 @@ fn informing(survey: &Survey, grown: &Grown, tank: &Tank) -> Option<NextRun> {
         // What it reads does not matter to what it would tell.
         run.roll_rad = vec![0.0; run.roll_time_s.len()];
         run.moment_n_m = Vec::new();
-        let summary = summarise(&run, &state, &terms, &[], &noise);
+        let summary = summarise(&run, &state, &terms, &[], &noise, None);
         let grown = grown_survey(survey, vec![run]);
         let solved = Added::new((&last.fit, &known), &grown, &fit, &[summary], &scatter);
         now - volume(&solved.eliminated.covariance())

@@ -127,13 +127,14 @@ impl Summary {
     }
 }
 
-/// Linearises a run about its state.
+/// Linearises a run about its state, a share of something taken off what was read.
 pub(super) fn summarise(
     run: &Observation,
     state: &RunState,
     terms: &[Term],
     candidates: &[Term],
     noise: &ChannelNoise,
+    less: Option<(&[f64], f64)>,
 ) -> Summary {
     let Columns { here, columns: mut changes } =
         simulated(run, state, terms, |simulated| match simulated {
@@ -147,6 +148,9 @@ pub(super) fn summarise(
     of_offset[..n_roll].fill(1.0);
     let mut left = residual(run, &here);
     left[..n_roll].iter_mut().for_each(|left| *left -= offset);
+    if let Some((less, share)) = less {
+        left.iter_mut().zip(less).for_each(|(left, less)| *left -= share * less);
+    }
     changes.insert(place, of_offset);
     let n_candidates: usize = candidates.iter().map(|c| c.effect.strengths.len()).sum();
     let n_known = changes.len() - n_candidates;

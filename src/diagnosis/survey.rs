@@ -1,12 +1,13 @@
 //! The runs of a campaign together, and the model that is fitted to all of them.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::AtomicU64;
 
 use super::cores;
+use super::cost::{MOST_SPENT, Spent};
 use super::observation::Observation;
 use super::run_fit::{ChannelNoise, RunState, Summary, misfit, predict, residual, summarise};
-use crate::model::{Acts, Base, Effect, N_BASE, Scope, Term};
+use crate::model::{Base, Effect, N_BASE, Scope, Term};
 
 /// The runs with the condition that each belongs to.
 pub(super) struct Survey {
@@ -19,19 +20,6 @@ pub(super) struct Survey {
     pub(super) spent: Arc<Spent>,
     pub(super) until: AtomicU64,
 }
-
-/// What all fits of a diagnosis have cost, in simulated values and changes of values.
-#[derive(Debug, Default)]
-pub(super) struct Spent(AtomicU64);
-
-/// What a diagnosis may cost: some half a minute of the two cores of `docs/bench.md`, counted
-/// rather than timed, so that the same runs give the same answer anywhere.
-const MOST_SPENT: u64 = 5_000_000_000;
-/// What one search for causes may cost of that.
-const MOST_OF_ONE: u64 = 3_500_000_000;
-/// Cost of an echo or of states that remember, against that of a value without.
-const COST_OF_ECHO: u64 = 8;
-const COST_OF_LAG: u64 = 2;
 
 /// Numbers of the law that the runs of a condition scatter about.
 pub(super) const N_LAW: usize = 4;
@@ -265,36 +253,6 @@ impl Survey {
         (0..self.runs.len()).filter(|r| self.condition_of[*r] == condition).collect()
     }
 
-    /// A search for causes begins.
-    pub(super) fn begin(&self) {
-        let most = MOST_SPENT.min(self.n_spent() + MOST_OF_ONE);
-        self.until.store(most, Ordering::Relaxed);
-    }
-
-    /// Whether the search for causes has cost what it may.
-    pub(super) fn is_spent(&self) -> bool {
-        self.n_spent() > self.until.load(Ordering::Relaxed)
-    }
-
-    /// What the diagnosis has cost so far.
-    pub(super) fn n_spent(&self) -> u64 {
-        self.spent.0.load(Ordering::Relaxed)
-    }
-
-    /// Counts a simulation of a run with so many changes.
-    pub(super) fn spend(&self, run: usize, terms: &[Term], n_changes: usize) {
-        let cost = |term: &Term| match term.effect.acts {
-            Acts::Echo(_) => COST_OF_ECHO,
-            Acts::Lagging(_) => COST_OF_LAG,
-            _ => 1,
-        };
-        let observation = &self.runs[run];
-        let n_values = observation.roll_time_s.len() + observation.moment_time_s.len();
-        let each: u64 = 1 + terms.iter().map(cost).sum::<u64>();
-        let of_run = n_values as u64 * (1 + n_changes as u64) * each;
-        self.spent.0.fetch_add(of_run, Ordering::Relaxed);
-    }
-
     /// Every run linearised about its state, with the candidates of each.
     pub(super) fn summaries(
         &self,
@@ -306,8 +264,37 @@ impl Survey {
             let (terms, candidates) = (fit.terms(r), candidates(r));
             let n_own = fit.states[r].own.len() + N_BASE + n_values(&terms);
             self.spend(r, &terms, n_own + n_values(&candidates));
-            summarise(&self.runs[r], &fit.states[r], &terms, &candidates, &noise[r])
+            summarise(&self.runs[r], &fit.states[r], &terms, &candidates, &noise[r], None)
         })
+    }
+
+    /// The same without candidates, a share of something taken off what was read.
+    pub(super) fn summaries_less(
+        &self,
+        fit: &Fit,
+        noise: &[ChannelNoise],
+        less: &[Vec<f64>],
+        share: f64,
+    ) -> Vec<Summary> {
+        self.each_run(&|r| {
+            let terms = fit.terms(r);
+            self.spend(r, &terms, fit.states[r].own.len() + N_BASE + n_values(&terms));
+            summarise(
+                &self.runs[r],
+                &fit.states[r],
+                &terms,
+                &[],
+                &noise[r],
+                Some((&less[r], share)),
+            )
+        })
+    }
+
+    /// What the model reads in a run.
+    pub(super) fn readings(&self, fit: &Fit, run: usize) -> Vec<f64> {
+        let terms = fit.terms(run);
+        self.spend(run, &terms, 0);
+        predict(&self.runs[run], &fit.states[run], &terms)
     }
 
     /// What the model leaves of a run.
@@ -352,25 +339,5 @@ impl Survey {
             noise
         });
         each.collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_search_ends_at_what_it_may_cost_and_the_next_at_what_is_left_of_the_whole() {
-        let spent = Arc::new(Spent::default());
-        let survey = Survey::new(Vec::new(), &spent);
-        survey.begin();
-        assert!(!survey.is_spent());
-        spent.0.fetch_add(MOST_OF_ONE + 1, Ordering::Relaxed);
-        assert!(survey.is_spent());
-        let other = Survey::new(Vec::new(), &spent);
-        other.begin();
-        assert!(!other.is_spent(), "another search has its own share");
-        spent.0.fetch_add(MOST_SPENT - MOST_OF_ONE, Ordering::Relaxed);
-        assert!(other.is_spent(), "and both together have no more than the whole");
     }
 }

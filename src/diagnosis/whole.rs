@@ -4,13 +4,14 @@ use std::cell::OnceCell;
 use std::sync::Arc;
 
 use super::alike::{SAME, is_approximate};
+use super::cost::Spent;
 use super::entry::CRUMB_OF_EVIDENCE;
 use super::growth::{Entered, Grown, Stem, grow};
 use super::observation::Observation;
 use super::reversed::Reversed;
 use super::settle::settle;
 use super::shaking;
-use super::survey::{Fit, Spent, Survey};
+use super::survey::{Fit, Survey};
 use super::verdict::{Diagnosis, Verdict, told};
 use crate::campaign::Tank;
 use crate::run::RunKind;

@@ -2,14 +2,14 @@
 
 use super::course::{Course, N_COURSE, N_HARMONICS};
 use super::effect::Circumstances;
-use super::history::{History, quintic};
+use super::history::History;
 use super::number::{Number, Sloped, slope};
 
 /// Share that the motion some time ago has in a moment now.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tap<N = f64> {
-    /// How long ago [s], whatever the parameters; longer than a step of any motion.
-    pub delay_s: f64,
+    /// How many half periods of the natural frequency ago, whatever the parameters; not nil.
+    pub half_periods: usize,
     /// Moment per unit inertia and roll [1/s2].
     pub of_roll: N,
     /// Moment per unit inertia and roll rate [1/s].
@@ -27,19 +27,19 @@ pub struct Taps {
     pub sloped: fn(&Circumstances, &[Sloped]) -> Vec<Tap<Sloped>>,
 }
 
-/// Weights of roll, rate and acceleration some time [s] ago.
-type Earlier = (f64, [f64; 3]);
-
-/// Earlier times with their weights.
+/// Earlier times, so many half periods ago, with the weights of roll, rate and acceleration.
 #[derive(Debug, Clone)]
-pub(super) struct Echo(Vec<Earlier>);
+pub(super) struct Echo {
+    half_period_s: f64,
+    taps: Vec<(usize, [f64; 3])>,
+}
 
 impl Echo {
     /// The echo under some parameters.
     pub(super) fn new(taps: &Taps, run: &Circumstances, values: &[f64]) -> Self {
         let taps = (taps.plain)(run, values);
-        let of = |tap: &Tap| (tap.delay_s, [tap.of_roll, tap.of_rate, tap.of_acceleration]);
-        Self(taps.iter().map(of).collect())
+        let of = |tap: &Tap| (tap.half_periods, [tap.of_roll, tap.of_rate, tap.of_acceleration]);
+        Self { half_period_s: half_period_s(run), taps: taps.iter().map(of).collect() }
     }
 
     /// What each parameter does to it.
@@ -51,33 +51,29 @@ impl Echo {
         let along = |k: usize| {
             let of = |tap: &Tap<Sloped>| {
                 let weights = [tap.of_roll, tap.of_rate, tap.of_acceleration];
-                (tap.delay_s, weights.map(|weight| weight.slopes[place(k)]))
+                (tap.half_periods, weights.map(|weight| weight.slopes[place(k)]))
             };
-            Self(taps.iter().map(of).collect())
+            Self { half_period_s: half_period_s(run), taps: taps.iter().map(of).collect() }
         };
         (0..values.len()).map(along).collect()
     }
 
-    /// Ready for a motion kept at equal steps.
-    pub(super) fn of_steps(&self, step_s: f64) -> StepEcho {
-        let at = |offset: f64| -> Vec<(usize, [f64; 6])> {
-            let taps = self.0.iter().map(|(delay_s, of)| {
-                let place = offset - delay_s / step_s;
-                let before = place.floor();
-                let weights = quintic(place - before, step_s);
-                let sum = |i: usize| (0..3).map(|m| of[m] * weights[m][i]).sum();
-                (-before as usize, std::array::from_fn(sum))
-            });
-            taps.collect()
+    /// Ready for a motion that is kept at so many equal steps each half period.
+    pub(super) fn of_steps(&self, steps_per_half_period: usize) -> StepEcho {
+        let of = |(half_periods, weights): &(usize, [f64; 3])| {
+            (half_periods * steps_per_half_period, *weights)
         };
-        StepEcho { at_step: at(0.0), between: at(0.5) }
+        let taps = self.taps.iter().map(of).collect();
+        StepEcho { taps, held_rad: 0.0, heard: Vec::new() }
     }
 
     /// Ready for a course that a rod has imposed for some time [s] at time zero.
     pub(super) fn of_course(&self, course: &Course, imposed_for_s: f64) -> CourseEcho {
         let w = course.frequency_rad_s();
         let mut heard = vec![Heard::default()];
-        for (delay_s, [of_roll, of_rate, of_acceleration]) in &self.0 {
+        let delay_s = |half_periods: usize| half_periods as f64 * self.half_period_s;
+        for (half_periods, [of_roll, of_rate, of_acceleration]) in &self.taps {
+            let delay_s = delay_s(*half_periods);
             let mut sum = heard[heard.len() - 1];
             sum.of_mean += of_roll;
             for h in 0..N_HARMONICS {
@@ -96,28 +92,78 @@ impl Echo {
             }
             heard.push(sum);
         }
-        let delays_s = self.0.iter().map(|(delay_s, _)| *delay_s).collect();
+        let delays_s = self.taps.iter().map(|(half_periods, _)| delay_s(*half_periods)).collect();
         CourseEcho { frequency_rad_s: w, imposed_for_s, delays_s, heard }
     }
 }
 
-/// An echo on equal steps: how many steps before, and the weights of the quintic from there on.
-#[derive(Debug, Clone)]
-pub(super) struct StepEcho {
-    at_step: Vec<(usize, [f64; 6])>,
-    between: Vec<(usize, [f64; 6])>,
+fn half_period_s(run: &Circumstances) -> f64 {
+    std::f64::consts::PI / run.natural_rad_s
 }
 
+/// An echo on equal steps, worked out as far ahead as the motion until now reaches.
+#[derive(Debug, Clone)]
+pub(super) struct StepEcho {
+    /// How many steps ago, and the weights of roll, rate and acceleration there.
+    taps: Vec<(usize, [f64; 3])>,
+    /// Roll at which the model was held before the motion [rad].
+    held_rad: f64,
+    /// The echo at every step so far.
+    heard: Vec<f64>,
+}
+
+/// Weights of the steps about the middle between two of them: a fifth degree through six.
+const MIDWAY: [f64; 6] = [3.0, -25.0, 150.0, 150.0, -25.0, 3.0];
+/// Steps that are worked out at once where no tap says how far ahead that may be.
+const AHEAD: usize = 64;
+
 impl StepEcho {
-    /// The echo at a step, or half a step after it; before the motion began the model was held.
-    pub(super) fn at(&self, history: &History, step: usize, is_half_after: bool) -> f64 {
-        let taps = if is_half_after { &self.between } else { &self.at_step };
-        let held_rad = history.first_roll();
-        let heard = taps.iter().map(|(before, weights)| match step.checked_sub(*before) {
-            Some(place) => history.weighed(place, weights),
-            None => (weights[0] + weights[3]) * held_rad,
-        });
-        heard.sum()
+    /// Begins with a motion of a model that was held at a roll [rad].
+    pub(super) fn begin(&mut self, held_rad: f64) {
+        self.held_rad = held_rad;
+        self.heard.clear();
+    }
+
+    /// The echo of a motion at one of its steps, or at one of those that come next.
+    pub(super) fn at(&mut self, history: &History, step: usize) -> f64 {
+        if self.heard.len() <= step {
+            self.work_out(history);
+        }
+        self.heard[step]
+    }
+
+    /// The same half a step after.
+    pub(super) fn midway(&mut self, history: &History, step: usize) -> f64 {
+        self.at(history, step + 3);
+        let at = |k: usize| self.heard[(step + k).saturating_sub(2)];
+        MIDWAY.iter().enumerate().map(|(k, weight)| weight / 256.0 * at(k)).sum()
+    }
+
+    /// The echo at every step of a motion that is known to its end.
+    pub(super) fn whole(mut self, history: &History) -> Vec<f64> {
+        self.begin(history.series()[0][0]);
+        self.work_out(history);
+        self.heard
+    }
+
+    /// One stretch more, which ends where the first tap hears of the last step that is known.
+    fn work_out(&mut self, history: &History) {
+        let first_tap = self.taps.iter().map(|(steps, _)| *steps).min().unwrap_or(AHEAD);
+        let (from, to) = (self.heard.len(), history.len() + first_tap);
+        self.heard.resize(to, 0.0);
+        let series = history.series();
+        for (steps, weights) in &self.taps {
+            let begins = (*steps).clamp(from, to);
+            let [of_roll, of_rate, of_acceleration] = weights;
+            self.heard[from..begins].iter_mut().for_each(|heard| *heard += of_roll * self.held_rad);
+            let earlier = begins - steps.min(&begins)..to - steps.min(&to);
+            let [roll, rate, acceleration] = series.map(|of| &of[earlier.clone()]);
+            let motion = roll.iter().zip(rate).zip(acceleration);
+            for (heard, ((roll, rate), acceleration)) in self.heard[begins..].iter_mut().zip(motion)
+            {
+                *heard += of_roll * roll + of_rate * rate + of_acceleration * acceleration;
+            }
+        }
     }
 }
 

@@ -8,9 +8,10 @@ use super::history::History;
 use super::lead::Lead;
 use super::term::{Base, Columns, Term};
 
-/// Runge-Kutta steps a period: with the fifth-degree course between, the phase of a roll errs by
-/// less than 1e-5 a period, which the natural frequency absorbs.
-const STEPS_PER_PERIOD: f64 = 48.0;
+/// Runge-Kutta steps a half period: with the fifth-degree course between, the phase of a roll errs
+/// by less than 1e-5 a period, which the natural frequency absorbs. It is even, for two of them are
+/// one step of a change.
+pub(super) const STEPS_PER_HALF_PERIOD: usize = 24;
 
 /// Most states: roll, rate, and those of up to six effects that remember.
 const MOST_STATES: usize = 2 + 6 * MOST_LAGS;
@@ -114,10 +115,12 @@ impl Decay<'_> {
         }
     }
 
-    /// The echoes of its terms on the steps of a motion.
-    pub(super) fn echoes(&self, step_s: f64) -> Vec<StepEcho> {
+    /// The echoes of its terms on so many steps of a motion each half period.
+    pub(super) fn echoes(&self, steps_per_half_period: usize) -> Vec<StepEcho> {
         let echo = |term: &Term| match term.effect.acts {
-            Acts::Echo(taps) => Some(Echo::new(&taps, self.run, &term.values).of_steps(step_s)),
+            Acts::Echo(taps) => {
+                Some(Echo::new(&taps, self.run, &term.values).of_steps(steps_per_half_period))
+            }
             _ => None,
         };
         self.terms.iter().filter_map(echo).collect()
@@ -151,7 +154,8 @@ impl Decay<'_> {
 
     /// Runge-Kutta of the fourth order with `N` states, to the last reading.
     fn path<const N: usize>(&self, with_points: bool) -> Path<N> {
-        let step_s = std::f64::consts::TAU / (STEPS_PER_PERIOD * self.run.natural_rad_s);
+        let half_period_s = std::f64::consts::PI / self.run.natural_rad_s;
+        let step_s = half_period_s / STEPS_PER_HALF_PERIOD as f64;
         let last_s = self.time_s.iter().filter_map(|t| t.last()).fold(0.0_f64, |a, b| a.max(*b));
         let n_steps = 2 * (0.5 * last_s / step_s).ceil().max(1.0) as usize;
         let mut history = History::new(step_s, n_steps);
@@ -159,13 +163,14 @@ impl Decay<'_> {
         let mut state = [0.0; N];
         state[..N_START].copy_from_slice(&self.start);
         self.begin(&mut state);
-        let echoes = self.echoes(step_s);
-        let heard = |history: &History, step: usize, is_half_after: bool| -> f64 {
-            echoes.iter().map(|echo| echo.at(history, step, is_half_after)).sum()
-        };
+        let mut echoes = self.echoes(STEPS_PER_HALF_PERIOD);
+        for echo in &mut echoes {
+            echo.begin(state[0]);
+        }
         for step in 0..=n_steps {
             let time_s = step as f64 * step_s;
-            let first = self.slope(time_s, &state, heard(&history, step, false));
+            let heard: f64 = echoes.iter_mut().map(|echo| echo.at(&history, step)).sum();
+            let first = self.slope(time_s, &state, heard);
             history.push([state[0], state[1], first[1]]);
             if with_points {
                 points.push(state);
@@ -177,7 +182,8 @@ impl Decay<'_> {
                 std::array::from_fn(|i| state[i] + share * step_s * slope[i])
             };
             let middle_s = time_s + 0.5 * step_s;
-            let (midway, next) = (heard(&history, step, true), heard(&history, step + 1, false));
+            let midway: f64 = echoes.iter_mut().map(|echo| echo.midway(&history, step)).sum();
+            let next: f64 = echoes.iter_mut().map(|echo| echo.at(&history, step + 1)).sum();
             let second = self.slope(middle_s, &along(&first, 0.5), midway);
             let third = self.slope(middle_s, &along(&second, 0.5), midway);
             let fourth = self.slope(time_s + step_s, &along(&third, 1.0), next);

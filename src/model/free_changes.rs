@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::echo::{Echo, StepEcho};
 use super::effect::{Acts, Instant, MOST_LAGS};
-use super::free::{Decay, LEAST_INERTIA, N_START, Path};
+use super::free::{Decay, LEAST_INERTIA, N_START, Path, STEPS_PER_HALF_PERIOD};
 use super::history::History;
 use super::lagging::follow;
 use super::linear::{Matrix, Transition, times};
@@ -47,7 +47,7 @@ impl<const N: usize> Changes<N> {
     pub(super) fn new(decay: &Decay<'_>, path: &Path<N>, candidates: &[Term]) -> Self {
         let (step_s, n_points) = (path.step_s, path.points.len());
         let n_forced = N_MOVING + decay.terms.iter().map(|term| term.values.len()).sum::<usize>();
-        let heard = Heard::of(decay, step_s);
+        let heard = Heard::of(decay, &path.history);
         let mut jacobians = Vec::with_capacity(n_points);
         let mut forcing = vec![[0.0; N]; n_points * n_forced];
         let mut quotients = Vec::with_capacity(n_points);
@@ -60,8 +60,7 @@ impl<const N: usize> Changes<N> {
                 jacobian: [[0.0; N]; N],
                 forcing: &mut forcing[k * n_forced..(k + 1) * n_forced],
             };
-            let now = |echo: &StepEcho| echo.at(&path.history, k, false);
-            quotients.push(about.fill(decay, &at(k), state, &heard.each(&now)));
+            quotients.push(about.fill(decay, &at(k), state, &heard.at(k)));
             jacobians.push(about.jacobian);
         }
         let transitions = (0..n_points - 2)
@@ -76,7 +75,7 @@ impl<const N: usize> Changes<N> {
             .iter()
             .flat_map(|term| pushes(decay, term, (&instants, &path.history), &quotients, step_s))
             .collect();
-        let echoes = decay.echoes(2.0 * step_s);
+        let echoes = decay.echoes(STEPS_PER_HALF_PERIOD / 2);
         let begun = begun(decay, n_forced);
         let started = (0..N_START).chain(decay.stirred_places()).collect();
         Self {
@@ -139,12 +138,18 @@ impl<const N: usize> Changes<N> {
 
     fn respond(&self, start: [f64; N], forcing: impl Fn(usize) -> [f64; N], change: &mut History) {
         change.clear();
-        let at = |point: usize, change: &History| {
+        let mut echoes = self.echoes.clone();
+        for echo in &mut echoes {
+            echo.begin(start[0]);
+        }
+        let mut at = |point: usize, change: &History| {
             let mut forcing = forcing(point);
             // Two points of the motion are one step of its change.
-            let (step, is_half_after) = (point / 2, point % 2 == 1);
-            for echo in &self.echoes {
-                forcing[1] += echo.at(change, step, is_half_after);
+            let step = point / 2;
+            for echo in &mut echoes {
+                let is_midway = point % 2 == 1;
+                forcing[1] +=
+                    if is_midway { echo.midway(change, step) } else { echo.at(change, step) };
             }
             forcing
         };
@@ -183,28 +188,29 @@ fn begun<const N: usize>(decay: &Decay<'_>, n_forced: usize) -> Vec<[f64; N]> {
     begun
 }
 
-/// The echoes of a decay's terms, and what each of their parameters does to them.
-struct Heard(Vec<(StepEcho, Vec<StepEcho>)>);
+/// The echoes of a decay's terms at every step, and what each of their parameters does to them.
+struct Heard(Vec<(Vec<f64>, Vec<Vec<f64>>)>);
 
 impl Heard {
-    fn of(decay: &Decay<'_>, step_s: f64) -> Self {
+    fn of(decay: &Decay<'_>, history: &History) -> Self {
+        let whole = |echo: &Echo| echo.of_steps(STEPS_PER_HALF_PERIOD).whole(history);
         let heard = decay.terms.iter().filter_map(|Term { effect, values }| match effect.acts {
             Acts::Echo(taps) => {
                 let slopes = Echo::slopes(&taps, decay.run, values);
-                let slopes = slopes.iter().map(|slope| slope.of_steps(step_s)).collect();
-                Some((Echo::new(&taps, decay.run, values).of_steps(step_s), slopes))
+                let echo = whole(&Echo::new(&taps, decay.run, values));
+                Some((echo, slopes.iter().map(whole).collect()))
             }
             _ => None,
         });
         Self(heard.collect())
     }
 
-    /// Each echo at one point with its slopes.
-    fn each(&self, now: &dyn Fn(&StepEcho) -> f64) -> Vec<Sloped> {
-        let at = |(echo, slopes): &(StepEcho, Vec<StepEcho>)| {
-            let mut sloped = Sloped::from(now(echo));
+    /// Each echo at one step with its slopes.
+    fn at(&self, step: usize) -> Vec<Sloped> {
+        let at = |(echo, slopes): &(Vec<f64>, Vec<Vec<f64>>)| {
+            let mut sloped = Sloped::from(echo[step]);
             let places = sloped.slopes[slope::PARAMETER..].iter_mut();
-            places.zip(slopes).for_each(|(place, slope)| *place = now(slope));
+            places.zip(slopes).for_each(|(place, slope)| *place = slope[step]);
             sloped
         };
         self.0.iter().map(at).collect()
@@ -348,11 +354,10 @@ fn pushes(
                     Some(all.map(|(i, p)| (law.plain)(i, &values) / (by * p.inertia)).collect())
                 }
                 Acts::Echo(taps) => {
-                    let echo = Echo::new(&taps, instants[0].run, &values).of_steps(step_s);
-                    let points = quotients.iter().enumerate();
-                    let push =
-                        |(k, p): (usize, &Quotient)| echo.at(history, k, false) / (by * p.inertia);
-                    Some(points.map(push).collect())
+                    let echo = Echo::new(&taps, instants[0].run, &values);
+                    let heard = echo.of_steps(STEPS_PER_HALF_PERIOD).whole(history);
+                    let points = heard.iter().zip(quotients);
+                    Some(points.map(|(heard, p)| heard / (by * p.inertia)).collect())
                 }
                 Acts::Inertia(law) => {
                     let push = |i, p: &Quotient| -p.acceleration * (law.plain)(i, &values);

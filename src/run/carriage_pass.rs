@@ -12,9 +12,14 @@ const STEADY_S: f64 = 1.0;
 /// How long after an instant [s] it is known whether the speed became steady then.
 const KNOWN_AFTER_S: f64 = STEADY_S + 0.4;
 /// Range of a steady speed within [`STEADY_S`], as a share of the speed.
-const RANGE_SHARE: f64 = 0.04;
-/// Deviation from the steady speed that ends it, as a share of the speed.
-const LEFT_SHARE: f64 = 0.06;
+const RANGE_SHARE: f64 = 0.07;
+/// Deviation from the steady level that ends it, as a share of the level: a carriage that wobbles by
+/// 6 % may be at a crest when it is first taken for steady. A run is worth keeping then; what the
+/// wobble does to it is for the diagnosis to tell.
+const LEFT_SHARE: f64 = 0.15;
+/// The same of the level from where it was when the speed became steady: the last tenth of it may
+/// come late, but a carriage that slows down without end is no steady one.
+const MOVED_SHARE: f64 = 0.12;
 /// Deviation from the steady speed that is still part of it, as a share of the speed.
 const KEPT_SHARE: f64 = 0.015;
 /// Speeds below this [m/s] do not matter.
@@ -168,7 +173,9 @@ impl CarriagePass {
         if deviation_m_s <= kept {
             self.kept_s = bin.time_s;
         }
-        if deviation_m_s <= left {
+        let first_m_s = self.steady.back().map_or(level_m_s, |steady| steady.level_m_s);
+        let moved = MOVED_SHARE * first_m_s.abs() + FLOOR_M_S + 2.5 * self.ripple_m_s();
+        if deviation_m_s <= left && (level_m_s - first_m_s).abs() <= moved {
             self.level_m_s += LEVEL_SHARE * (bin.value - level_m_s);
             self.n_outside = 0;
             return;
@@ -239,6 +246,31 @@ mod tests {
         // The last 10 % come with a time constant of 2 s; the wobble of 2 % stays.
         assert_eq!(carriage.passage(9.0, 39.0), Passage::Steady);
         assert_eq!(carriage.passage(5.0, 5.5), Passage::Changing);
+    }
+
+    #[test]
+    fn a_carriage_that_wobbles_by_six_hundredths_is_steady_until_it_brakes() {
+        for frequency_hz in [0.2, 0.35, 0.5] {
+            let mut carriage = CarriagePass::default();
+            for k in 0..1500 {
+                let t = f64::from(k) * 0.02;
+                let wobble = 1.0 + 0.06 * (std::f64::consts::TAU * frequency_hz * t).sin();
+                carriage.push(t, (0.5 * (t - 3.0)).min(0.5 * (27.0 - t)).clamp(0.0, wobble));
+            }
+            assert_eq!(carriage.passage(7.5, 22.0), Passage::Steady, "{frequency_hz} Hz");
+            let Passage::Ends(end_s) = carriage.passage(8.0, 26.5) else { panic!("no braking") };
+            assert!((22.0..25.1).contains(&end_s), "{frequency_hz} Hz: {end_s} s");
+        }
+    }
+
+    #[test]
+    fn a_carriage_that_slows_down_without_end_is_not_steady() {
+        let mut carriage = CarriagePass::default();
+        for k in 0..1250 {
+            let t = f64::from(k) * 0.02;
+            carriage.push(t, (0.5 * (t - 3.0)).min(1.2 - 0.04 * t).max(0.0));
+        }
+        assert_ne!(carriage.passage(6.0, 15.0), Passage::Steady);
     }
 
     #[test]

@@ -83,18 +83,18 @@ fn taps<N: Number>(run: &Circumstances, p: &[N]) -> Vec<Tap<N>> {
     let step_s = std::f64::consts::PI / w;
     let reach = HEARD.map(|share| share * trip_s.value() / step_s);
     // No wave is back within half a period.
-    let places = (reach[0].ceil() as i32).max(2)..=reach[1].floor() as i32;
+    let places = (reach[0].ceil() as usize).max(2)..=reach[1].floor() as usize;
     let size = step_s * (w / std::f64::consts::TAU).sqrt() * (1.0 - outrun(run)).max(0.0);
     let size = trip_s.powf(N::from(-0.5)) * size;
-    let tap = |place: i32| {
-        let delay_s = step_s * f64::from(place);
+    let tap = |half_periods: usize| {
+        let delay_s = step_s * half_periods as f64;
         let share = trip_s.powf(N::from(-1.0)) * delay_s;
         let (sin, cos) = (share * (0.5 * w * delay_s)).sin_cos();
         let weight = size * share.powf(p[3]) * window(share);
         let of_other = (p[1] * cos - p[0] * sin) * weight;
         let of_roll = of_other * (0.5 * w);
         let of_rate = (p[0] * cos + p[1] * sin) * weight;
-        Tap { delay_s, of_roll, of_rate, of_acceleration: of_other * (-0.5 / w) }
+        Tap { half_periods, of_roll, of_rate, of_acceleration: of_other * (-0.5 / w) }
     };
     places.map(tap).collect()
 }
