@@ -12,14 +12,15 @@ const STEADY_S: f64 = 1.0;
 /// How long after an instant [s] it is known whether the speed became steady then.
 const KNOWN_AFTER_S: f64 = STEADY_S + 0.4;
 /// Range of a steady speed within [`STEADY_S`], as a share of the speed.
-const RANGE_SHARE: f64 = 0.07;
-/// Deviation from the steady level that ends it, as a share of the level: a carriage that wobbles by
-/// 6 % may be at a crest when it is first taken for steady. A run is worth keeping then; what the
-/// wobble does to it is for the diagnosis to tell.
-const LEFT_SHARE: f64 = 0.15;
-/// The same of the level from where it was when the speed became steady: the last tenth of it may
-/// come late, but a carriage that slows down without end is no steady one.
-const MOVED_SHARE: f64 = 0.12;
+const RANGE_SHARE: f64 = 0.04;
+/// Deviation from the steady speed that ends it, as a share of the speed.
+const LEFT_SHARE: f64 = 0.06;
+/// The same of a carriage that wobbles: one that does so by 6 % may have been at a crest when it
+/// was taken for steady. Its runs are worth keeping, and what the wobble does to them is for the
+/// diagnosis to tell.
+const SWUNG_SHARE: f64 = 0.15;
+/// Time [s] within which a wobble brings it back to the steady speed.
+const BACK_S: f64 = 3.5;
 /// Deviation from the steady speed that is still part of it, as a share of the speed.
 const KEPT_SHARE: f64 = 0.015;
 /// Speeds below this [m/s] do not matter.
@@ -133,14 +134,19 @@ impl CarriagePass {
         if self.recent.front().is_none_or(|b| b.time_s > from_s) {
             return;
         }
-        let window = self.recent.iter().filter(|b| b.time_s >= from_s);
+        let window = || self.recent.iter().filter(|b| b.time_s >= from_s);
         let (mut low, mut high, mut sum, mut n) = (f64::INFINITY, f64::NEG_INFINITY, 0.0, 0);
-        for b in window {
+        for b in window() {
             (low, high) = (low.min(b.value), high.max(b.value));
             (sum, n) = (sum + b.value, n + 1);
         }
         let mean_m_s = sum / f64::from(n.max(1));
-        if high - low <= RANGE_SHARE * mean_m_s.abs() + FLOOR_M_S + 6.0 * self.ripple_m_s() {
+        let spare_m_s = FLOOR_M_S + 6.0 * self.ripple_m_s();
+        let range = |share: f64| share * mean_m_s.abs() + spare_m_s;
+        // At the crest of a wobble it ends where it began, as no carriage that gathers speed does.
+        let first_m_s = window().next().map_or(mean_m_s, |b| b.value);
+        let is_crest = (bin.value - first_m_s).abs() <= range(0.25 * RANGE_SHARE);
+        if high - low <= range(if is_crest { SWUNG_SHARE } else { RANGE_SHARE }) {
             if self.steady.len() == N_STEADY {
                 self.steady.pop_front();
             }
@@ -173,9 +179,9 @@ impl CarriagePass {
         if deviation_m_s <= kept {
             self.kept_s = bin.time_s;
         }
-        let first_m_s = self.steady.back().map_or(level_m_s, |steady| steady.level_m_s);
-        let moved = MOVED_SHARE * first_m_s.abs() + FLOOR_M_S + 2.5 * self.ripple_m_s();
-        if deviation_m_s <= left && (level_m_s - first_m_s).abs() <= moved {
+        let swung = left + (SWUNG_SHARE - LEFT_SHARE) * level_m_s.abs();
+        let is_back = bin.time_s - self.kept_s < BACK_S;
+        if deviation_m_s <= left || is_back && deviation_m_s <= swung {
             self.level_m_s += LEVEL_SHARE * (bin.value - level_m_s);
             self.n_outside = 0;
             return;
@@ -260,6 +266,22 @@ mod tests {
             assert_eq!(carriage.passage(7.5, 22.0), Passage::Steady, "{frequency_hz} Hz");
             let Passage::Ends(end_s) = carriage.passage(8.0, 26.5) else { panic!("no braking") };
             assert!((22.0..25.1).contains(&end_s), "{frequency_hz} Hz: {end_s} s");
+        }
+    }
+
+    #[test]
+    fn a_carriage_that_gathers_speed_slowly_is_steady_once_it_has_it() {
+        for gain_m_s2 in [0.04, 0.07, 0.1, 0.2] {
+            let mut carriage = CarriagePass::default();
+            let there_s = 3.0 + 2.0 / gain_m_s2;
+            for k in 0..((there_s + 20.0) * 50.0) as usize {
+                let t = k as f64 * 0.02;
+                carriage.push(t, (gain_m_s2 * (t - 3.0)).clamp(0.0, 2.0));
+            }
+            let passage = carriage.passage(there_s + 2.0, there_s + 19.5);
+            assert_eq!(passage, Passage::Steady, "{gain_m_s2} m/s2");
+            let passage = carriage.passage(there_s - 10.0, there_s);
+            assert_ne!(passage, Passage::Steady, "{gain_m_s2} m/s2");
         }
     }
 
