@@ -27,6 +27,7 @@ pub(super) fn check_backward(
         (current, entered) = (fewer, kept);
     }
     let mut e = 0;
+    let mut is_newcomer = false;
     while e < entered.len() && !survey.is_spent() {
         let mut less = current.fit.clone();
         let taken = less.extensions.remove(e);
@@ -41,19 +42,19 @@ pub(super) fn check_backward(
         // have, or a trifle, may be a part of one that was known before it, too.
         let scope = taken.effect.scope;
         let is_crumb = entered.iter().enumerate().any(|(k, other)| {
-            let is_asked = k > e || scope == Scope::OddRun;
+            let is_asked = k > e || is_newcomer || scope == Scope::OddRun;
             k != e
                 && is_approximate(other.id)
                 && (is_trifle_of(other, missed)
                     || is_asked && is_crumb_of(other, &looked, Some(scope)))
         });
         if missed < ENTERS || is_crumb {
-            current = without;
+            (current, is_newcomer) = (without, false);
             entered.remove(e);
             continue;
         }
         if !missed.is_finite() {
-            e += 1;
+            (e, is_newcomer) = (e + 1, false);
             continue;
         }
         // A rest that does not settle judges no other effects.
@@ -113,8 +114,13 @@ pub(super) fn check_backward(
             entered[e].id = better.id;
             entered[e].equivalent_to.retain(|id| *id != better.id);
             current = settle(survey, fit, noise);
+            // It is looked back on as any other, once.
+            if !is_newcomer {
+                is_newcomer = true;
+                continue;
+            }
         }
-        e += 1;
+        (e, is_newcomer) = (e + 1, false);
     }
     (current, entered)
 }

@@ -1,5 +1,5 @@
-//! What the fits of a diagnosis cost and may cost, counted rather than timed: the same runs give the
-//! same answer anywhere.
+//! What the fits of a diagnosis cost and may cost, counted rather than timed: the same runs give
+//! the same answer anywhere.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -132,18 +132,23 @@ pub(super) fn is_plausible(survey: &Survey, settled: &Settled, e: usize) -> bool
     })
 }
 
+/// Share of what was known of a parameter before that runs which say something of it leave.
+const MOSTLY_KNOWN: f64 = 0.9;
+
 /// Logarithm of the odds, over all runs, that the parameters of an effect are those of its cause.
 fn log_odds(survey: &Survey, settled: &Settled, e: usize, layout: &Layout) -> f64 {
     let Extension { effect, slots, slot_of, .. } = &settled.fit.extensions[e];
     let of_slot = |run: usize, s: usize| -> f64 {
-        let known = (0..effect.n_parameters()).filter_map(|k| Some((k, effect.parameter(k).odds?)));
-        known
-            .map(|(k, odds)| {
-                let column = layout.parameter(&settled.fit, e, s, k);
-                let sd = settled.solution.covariance[column][column].max(0.0).sqrt();
-                odds(&survey.runs[run].at, slots[s][k], sd)
-            })
-            .sum()
+        let each = (0..effect.n_parameters()).map(|k| (k, effect.parameter(k)));
+        each.filter_map(|(k, parameter)| {
+            let column = layout.parameter(&settled.fit, e, s, k);
+            let sd = settled.solution.covariance[column][column].max(0.0).sqrt();
+            // What is known no better than before speaks neither for nor against.
+            let is_known = sd < MOSTLY_KNOWN * parameter.typical;
+            let odds = parameter.odds.filter(|_| is_known)?;
+            Some(odds(&survey.runs[run].at, slots[s][k], sd))
+        })
+        .sum()
     };
     // A set that many runs share is asked about once, in the first of them.
     let first_of = |s: usize| slot_of.iter().position(|slot| *slot == Some(s));

@@ -34,8 +34,8 @@ pub(crate) fn append(page: &mut String, outcomes: &[Value]) {
         let within = excess.iter().filter(|excess| **excess < 0.05).count();
         writeln!(
             page,
-            "| held-out RMSE after, within 5 % of what the true model foretells with the damping of the \
-             same other runs | {n} | {:.1} %, median excess {:.1} % |",
+            "| held-out RMSE after, within 5 % of what the true model foretells with the \
+             damping of the same other runs | {n} | {:.1} %, median excess {:.1} % |",
             100.0 * within as f64 / n as f64,
             100.0 * excess[n / 2]
         )

@@ -51,8 +51,9 @@ fn error_rad(campaign: &Campaign, pass: &Pass) -> f64 {
     (minimise(start.to_vec(), &priors, 12, parts).sum / n).sqrt() * ROLL_NOISE_RAD
 }
 
-/// Factors on linear and cubic damping in a pass, from those that the other passes of the campaign's
-/// hull had for sure: by least squares `B0` and its growth with speed, and the mean cubic one.
+/// Factors on linear and cubic damping in a pass, from those that the other passes of the
+/// campaign's hull had for sure: by least squares `B0` and its growth with speed, and the mean
+/// cubic one.
 fn learnt(campaign: &Campaign, pass: &Pass) -> [f64; 2] {
     let others: Vec<&Pass> = campaign
         .passes
