@@ -145,6 +145,14 @@ fn the_true_model_foretells_all_of_a_run_but_its_noise_and_what_the_day_drew_for
 }
 
 #[test]
+fn the_true_model_learns_from_the_other_runs_that_a_day_damps_by_a_tenth_more() {
+    let mut campaign = Campaign::draw(&asked(RunSet::Speeds, &["restoring.cubic"], 2.0, 1));
+    campaign.passes.iter_mut().for_each(|pass| pass.scatter = [1.1; 2]);
+    let off = foretold::rmse_deg(&campaign) / ROLL_NOISE_RAD.to_degrees() - 1.0;
+    assert!(off.abs() < 0.02, "{off} beyond the noise");
+}
+
+#[test]
 fn the_program_finds_and_identifies_the_runs_of_a_clean_campaign() {
     for set in [RunSet::Rest, RunSet::Speeds, RunSet::Forced] {
         let campaign = Campaign::draw(&asked(set, &[], 1.0, 0));

@@ -14,7 +14,8 @@ pub(super) struct Spent(AtomicU64);
 pub(super) const MOST_SPENT: u64 = 5_000_000_000;
 /// What one search for causes may cost of that.
 const MOST_OF_ONE: u64 = 3_500_000_000;
-/// Cost of an echo or of states that remember, against that of a value without.
+/// Cost of an echo or of states that remember, against that of a value without; by a profile of
+/// KVLCC2's decay with waves from the walls, roughly.
 const COST_OF_ECHO: u64 = 2;
 const COST_OF_LAG: u64 = 2;
 

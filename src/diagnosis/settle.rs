@@ -27,10 +27,11 @@ const UNFOLLOWED: f64 = 1.0;
 /// Promised gain in misfit below which a fit has settled.
 const SMALL_GAIN: f64 = 0.05;
 
-/// Factor between shares of a step that are tried, and the least of them.
+/// Factor between shares of a step that are tried, and the least of them: five tries, by judgement.
 const SMALLER: f64 = 0.3;
 const LEAST_SHARE: f64 = 0.008;
-/// Share of a step over which it is seen how the readings bend.
+/// Share of a step over which it is seen how the readings bend: far above rounding, and short
+/// against the step that bends; by judgement.
 const LITTLE: f64 = 0.1;
 
 /// Settles a model from where it stands.

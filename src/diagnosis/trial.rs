@@ -132,7 +132,8 @@ pub(super) fn is_plausible(survey: &Survey, settled: &Settled, e: usize) -> bool
     })
 }
 
-/// Share of what was known of a parameter before that runs which say something of it leave.
+/// Share of a parameter's prior deviation that runs which say something of it leave at most; by
+/// judgement, on a lost keel that a wave known no better than before made a wave.
 const MOSTLY_KNOWN: f64 = 0.9;
 
 /// Logarithm of the odds, over all runs, that the parameters of an effect are those of its cause.

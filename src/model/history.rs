@@ -102,7 +102,8 @@ const QUINTIC: [[f64; 6]; 6] = [
     [0.0, 0.0, 0.0, 0.5, -1.0, 0.5],
 ];
 
-/// What each of the six weighs in the roll at a share `x` of the step, by Horner's scheme.
+/// What each of the six weighs in the roll at a share `x` of the step, by Horner's scheme: the roll
+/// alone is what nearly every reading asks for.
 fn quintic_roll(x: f64, step_s: f64) -> [f64; 6] {
     let h = step_s;
     let units = [1.0, h, h * h, 1.0, h, h * h];

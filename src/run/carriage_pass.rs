@@ -19,8 +19,12 @@ const LEFT_SHARE: f64 = 0.06;
 /// was taken for steady. Its runs are worth keeping, and what the wobble does to them is for the
 /// diagnosis to tell.
 const SWUNG_SHARE: f64 = 0.15;
-/// Time [s] within which a wobble brings it back to the steady speed.
+/// Time [s] within which a wobble brings it back to the steady speed: more than half a period of
+/// the slowest that is looked for, 0.2 Hz.
 const BACK_S: f64 = 3.5;
+/// Change of the speed over [`STEADY_S`] at the crest of a wobble, as a share of the speed; by
+/// judgement, far below what a carriage that gathers speed changes by where its range is too wide.
+const CREST_SHARE: f64 = 0.01;
 /// Deviation from the steady speed that is still part of it, as a share of the speed.
 const KEPT_SHARE: f64 = 0.015;
 /// Speeds below this [m/s] do not matter.
@@ -145,7 +149,7 @@ impl CarriagePass {
         let range = |share: f64| share * mean_m_s.abs() + spare_m_s;
         // At the crest of a wobble it ends where it began, as no carriage that gathers speed does.
         let first_m_s = window().next().map_or(mean_m_s, |b| b.value);
-        let is_crest = (bin.value - first_m_s).abs() <= range(0.25 * RANGE_SHARE);
+        let is_crest = (bin.value - first_m_s).abs() <= range(CREST_SHARE);
         if high - low <= range(if is_crest { SWUNG_SHARE } else { RANGE_SHARE }) {
             if self.steady.len() == N_STEADY {
                 self.steady.pop_front();
@@ -282,6 +286,10 @@ mod tests {
             assert_eq!(passage, Passage::Steady, "{gain_m_s2} m/s2");
             let passage = carriage.passage(there_s - 10.0, there_s);
             assert_ne!(passage, Passage::Steady, "{gain_m_s2} m/s2");
+            if gain_m_s2 * STEADY_S > 2.0 * RANGE_SHARE {
+                let passage = carriage.passage(there_s - 1.0, there_s - 0.5);
+                assert_eq!(passage, Passage::Changing, "{gain_m_s2} m/s2");
+            }
         }
     }
 
