@@ -21,7 +21,7 @@ use super::hidden_tank::verdict::{Verdict, diagnose};
 const DETECTABLE: f64 = 50.0;
 
 /// Draws a campaign by name, shows which, and asks the program about it.
-fn diagnosed(set: RunSet, hidden: &[&str], size: f64, seed: u64) -> (Campaign, Verdict) {
+pub(crate) fn diagnosed(set: RunSet, hidden: &[&str], size: f64, seed: u64) -> (Campaign, Verdict) {
     let hidden: Vec<String> = hidden.iter().map(|id| (*id).to_owned()).collect();
     let asked = Asked { set, hidden, size, seed, scatter: SCATTER };
     let campaign = Campaign::draw(&asked);
@@ -49,7 +49,7 @@ fn named(verdict: &Verdict) -> Vec<&str> {
 }
 
 /// A seed that nobody chose: the day's number of the story.
-fn drawn_seed(story: &str) -> u64 {
+pub(crate) fn drawn_seed(story: &str) -> u64 {
     Draw::named(story).index(1000) as u64
 }
 

@@ -20,6 +20,7 @@ mod every_protocol_is_recorded_and_decoded_anew;
 mod everything_at_once_for_hours_loses_nothing;
 mod forced_runs_of_any_course;
 mod good_practice_is_answered;
+mod held_out_runs_are_foretold;
 mod hidden_effects_are_named;
 mod hidden_tank;
 mod http;

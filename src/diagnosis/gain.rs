@@ -20,7 +20,8 @@ pub(super) struct HeldOut {
 
 /// Every run predicted without its own help; nothing when there is one run.
 ///
-/// Only the start of a run (its initial state, or the course that the rod imposed) is its own.
+/// Only the start of a run (its initial state, or the course that the rod imposed) is its own, and
+/// what it rolled tells that: the moment is to be foretold.
 pub(super) fn held_out(survey: &Survey, settled: &Settled, noise: &[ChannelNoise]) -> Vec<HeldOut> {
     if survey.runs.len() < 2 {
         return Vec::new();
@@ -47,9 +48,9 @@ fn predicted(survey: &Survey, trained: &Fit, run: usize, noise: &ChannelNoise) -
         RunState { own: trained.states[run].own.clone(), ..trained.states[run].clone() };
     (state.base.natural_rad_s, state.base.b1_per_s, state.base.b3_s) = (law[0], law[1], law[2]);
     state.base.log_scale = trained.log_scale;
-    let white = ChannelNoise { correlation: [0.0; 2], ..*noise };
+    let rolled = ChannelNoise { sd: [noise.sd[0], f64::INFINITY], correlation: [0.0; 2] };
     for _ in 0..3 {
-        let own = summarise(observation, &state, &terms, &[], &white, None);
+        let own = summarise(observation, &state, &terms, &[], &rolled, None);
         let nothing = vec![0.0; own.eliminated.rest.n() - 1];
         let steps = own.eliminated.back(&nothing);
         state.own.resize(steps.len(), 0.0);

@@ -92,7 +92,8 @@ pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
         campaign.effects.iter().map(|effect| json!(effect.values)).collect::<Vec<_>>().into();
     line["covered"] = covered(&campaign, &verdict.json["causes"]);
     if matches!(outcome, Outcome::Named | Outcome::InClass) {
-        line["foretold_rmse_deg"] = json!(foretold::rmse_deg(&campaign));
+        line["foretold_rmse_deg"] =
+            json!(foretold::rmse_deg(&campaign, &foretold::stretches(&verdict.json)));
     }
     line["decided"] = json!(decides(&campaign, &verdict, program));
     tell(&mut line, &verdict);

@@ -125,14 +125,15 @@ fn step_of(unknown: usize, n_beside: usize) -> f64 {
 
 /// The noise-free recording of a pass between the start and the end of its run.
 fn target(campaign: &Campaign, hidden: &[Effect], pass: &Pass) -> Target {
-    recorded(campaign.rows_with(hidden, pass, false), pass, pass.as_labelled())
+    let line = Timeline::of(pass);
+    let rows = campaign.rows_with(hidden, pass, false);
+    recorded(rows, [line.start_s, line.end_s], pass.as_labelled())
 }
 
-/// A recording of a pass between the start and the end of its run, to be modelled as another.
-pub(super) fn recorded(rows: Rows, pass: &Pass, as_pass: Pass) -> Target {
-    let line = Timeline::of(pass);
+/// A stretch of a recording, from one instant [s] to another, to be modelled as a pass.
+pub(super) fn recorded(rows: Rows, [from_s, to_s]: [f64; 2], as_pass: Pass) -> Target {
     let at = |time_s: f64| rows.time_s.partition_point(|stamp_s| *stamp_s < time_s - 1e-6);
-    let (first, last) = (at(line.start_s), at(line.end_s).min(rows.time_s.len()));
+    let (first, last) = (at(from_s), at(to_s).min(rows.time_s.len()));
     Target { pass: as_pass, first, last, rows, roll_sd: ROLL_NOISE_RAD }
 }
 

@@ -1,24 +1,60 @@
 //! What the true model, with the damping of the other runs, foretells of a run that it is only told
 //! the start of.
 
-use super::base::{Base, froude};
+use serde_json::Value;
+
+use super::base::Base;
 use super::campaign::{Campaign, Effect, hiding};
 use super::effect::Hiding;
-use super::fit::{START_SD, START_STEP, Target, off_target, recorded, started};
+use super::fit::{START_SD, Target, off_target, recorded, started};
 use super::instruments::ROLL_NOISE_RAD;
+use super::learnt::{ROUNDS, Shown, learnt, shown, slopes};
 use super::least_squares::{Part, minimise};
 use super::plan::Pass;
 
-/// Root mean square of recorded less foretold roll [deg], mean over the runs of a campaign. The
-/// true model has the values of hull and effects, but its damping is what the other runs had on the
-/// day: no two are alike, and nobody learns more from so few. Of the run it knows neither the
-/// scatter nor what the day drew for it, goes by its label, and finds its start in the recording.
-pub(crate) fn rmse_deg(campaign: &Campaign) -> f64 {
-    let errors: Vec<f64> = campaign.passes.iter().map(|pass| error_rad(campaign, pass)).collect();
-    (errors.iter().sum::<f64>() / errors.len() as f64).to_degrees()
+/// A run within the recording of a pass, from its first to its last sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stretch {
+    /// Place of the pass in the campaign.
+    pub(crate) pass: usize,
+    /// Its first sample [s].
+    pub(crate) from_s: f64,
+    /// Its last one [s].
+    pub(crate) to_s: f64,
 }
 
-fn error_rad(campaign: &Campaign, pass: &Pass) -> f64 {
+/// The runs that an answer tells the moment of: in a hull that damps heavily a decay ends long
+/// before the crew stops waiting, and what follows is noise that anyone foretells.
+pub(crate) fn stretches(answer: &Value) -> Vec<Stretch> {
+    let told = |left: &Value| {
+        let (pass, _) = left["run"].as_str()?.strip_prefix("pass_")?.split_once('-')?;
+        let time_s = left["time_s"].as_array()?;
+        Some(Stretch {
+            pass: pass.parse::<usize>().ok()?.checked_sub(1)?,
+            from_s: time_s.first()?.as_f64()?,
+            to_s: time_s.last()?.as_f64()?,
+        })
+    };
+    answer["residual"]["moment_after"].as_array().into_iter().flatten().filter_map(told).collect()
+}
+
+/// Root mean square of recorded less foretold roll [deg], mean over runs; none without a run. The
+/// true model has the values of hull and effects, and learns the damping of the day from the other
+/// runs, of which it knows all else. Of the run it knows neither the scatter nor what the day drew
+/// for it, goes by its label, and finds its start in the recording.
+pub(crate) fn rmse_deg(campaign: &Campaign, runs: &[Stretch]) -> Option<f64> {
+    let shown: Vec<Shown> = runs.iter().map(|run| shown(campaign, run)).collect();
+    let error_rad = |run: &Stretch| {
+        let is_other = |other: &&Shown| other.pass.index != run.pass && !other.pass.other_hull;
+        let others: Vec<&Shown> = shown.iter().filter(is_other).collect();
+        error_rad(campaign, run, &others)
+    };
+    let sum: f64 = runs.iter().map(error_rad).sum();
+    (!runs.is_empty()).then(|| (sum / runs.len() as f64).to_degrees())
+}
+
+fn error_rad(campaign: &Campaign, run: &Stretch, others: &[&Shown]) -> f64 {
+    let pass = &campaign.passes[run.pass];
     let effects: Vec<Effect> = campaign
         .effects
         .iter()
@@ -29,52 +65,18 @@ fn error_rad(campaign: &Campaign, pass: &Pass) -> f64 {
     for hidden in &mut acting {
         hidden.plan(&mut campaign.passes.clone());
     }
-    let lawful = Pass { scatter: learnt(campaign, pass), ..pass.as_labelled() };
+    let scatter = learnt(&campaign.base, pass, others, campaign.asked.scatter);
+    let lawful = Pass { scatter, ..pass.as_labelled() };
     let base = campaign.base_of(&lawful);
-    let target = recorded(campaign.rows(pass, true), pass, lawful);
+    let target = recorded(campaign.rows(pass, true), [run.from_s, run.to_s], lawful);
     let start = started(&target);
     let off = |x: &[f64]| off_roll(&target, base, &acting, [x[0], x[1]]);
-    let parts = |x: &[f64], with_slopes: bool| {
-        let residuals = off(x);
-        let mut slopes = Vec::new();
-        for unknown in (0..2).filter(|_| with_slopes) {
-            let mut moved = x.to_vec();
-            moved[unknown] += START_STEP;
-            let after = off(&moved);
-            let slope = after.iter().zip(&residuals).map(|(b, a)| (b - a) / START_STEP).collect();
-            slopes.push((unknown, slope));
-        }
-        vec![Part { residuals, slopes }]
-    };
     let n = (target.last - target.first) as f64;
     let priors = start.map(|start| (start, START_SD));
-    (minimise(start.to_vec(), &priors, 12, parts).sum / n).sqrt() * ROLL_NOISE_RAD
-}
-
-/// Factors on linear and cubic damping in a pass, from those that the other passes of the
-/// campaign's hull had for sure: by least squares `B0` and its growth with speed, and the mean
-/// cubic one.
-fn learnt(campaign: &Campaign, pass: &Pass) -> [f64; 2] {
-    let others: Vec<&Pass> = campaign
-        .passes
-        .iter()
-        .filter(|other| other.index != pass.index && !other.other_hull)
-        .collect();
-    if others.is_empty() {
-        return [1.0; 2];
-    }
-    let n = others.len() as f64;
-    let mean = |i: usize| others.iter().map(|other| other.scatter[i]).sum::<f64>() / n;
-    let base = &campaign.base;
-    // Of a lawful damping the share that speed brings: a factor is a line over it.
-    let share = |pass: &Pass| 1.0 - base.b0 / base.linear(froude(pass.speed_m_s));
-    let middle = others.iter().map(|other| share(other)).sum::<f64>() / n;
-    let moment = |of: &dyn Fn(&Pass) -> f64| -> f64 {
-        others.iter().map(|other| (share(other) - middle) * of(other)).sum()
-    };
-    let spread = moment(&|other| share(other) - middle);
-    let slope = if spread > 1e-6 { moment(&|other| other.scatter[0]) / spread } else { 0.0 };
-    [mean(0) + slope * (share(pass) - middle), mean(1)]
+    let least = minimise(start.to_vec(), &priors, ROUNDS, |x, with_slopes| {
+        vec![Part { residuals: off(x), slopes: slopes(x, with_slopes, &off) }]
+    });
+    (least.sum / n).sqrt() * ROLL_NOISE_RAD
 }
 
 /// Foretold less recorded roll, by the noise.

@@ -13,6 +13,10 @@ pub(crate) struct Part {
 pub(crate) struct Minimum {
     /// Sum of squares with the priors.
     pub(crate) sum: f64,
+    /// Where it is.
+    pub(crate) x: Vec<f64>,
+    /// The normal matrix of the last round, row by row.
+    pub(crate) matrix: Vec<f64>,
 }
 
 /// Minimises the sum of squares of `parts(x, true)` and of `(x - mean)/sd` of every unknown.
@@ -31,6 +35,7 @@ pub(crate) fn minimise(
         |parts: &[Part]| parts.iter().flat_map(|part| &part.residuals).map(|r| r * r).sum::<f64>();
     let mut sum = f64::INFINITY;
     let mut damping = 1e-3;
+    let mut last = Vec::new();
     for _ in 0..rounds {
         let now = parts(&x, true);
         let before = data_sum(&now) + prior_sum(&x);
@@ -52,12 +57,13 @@ pub(crate) fn minimise(
             }
             damping *= 10.0;
         }
+        last = matrix;
         // A tenth of a unit of the sum is far below what anything is decided by.
         if !moved || before - sum < 0.1 + 1e-3 * sum {
             break;
         }
     }
-    Minimum { sum }
+    Minimum { sum, x, matrix: last }
 }
 
 /// `J'J + P` and `J'r + P (x - mean)`, the priors' precisions `P` on the diagonal.
@@ -82,7 +88,7 @@ fn normal_equations(x: &[f64], priors: &[(f64, f64)], parts: &[Part]) -> (Vec<f6
 }
 
 /// Solves `(A + damping diag A) d = g` by Cholesky's factor; none if that is not positive.
-fn solve(matrix: &[f64], gradient: &[f64], damping: f64) -> Option<Vec<f64>> {
+pub(crate) fn solve(matrix: &[f64], gradient: &[f64], damping: f64) -> Option<Vec<f64>> {
     let n = gradient.len();
     let mut lower = vec![0.0; n * n];
     for i in 0..n {
