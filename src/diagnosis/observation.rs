@@ -249,12 +249,13 @@ impl Observation {
 }
 
 /// The roll before time zero of a record: the last readings of it may lie in the run itself, which
-/// begins when the model is surely free.
+/// begins when the model is surely free. A rod does not let go, and what follows belongs to it.
 fn lead(run: &Run, record: &Record, rolling_rad_s: f64) -> Lead {
     let all = [&run.lead, &run.roll];
     let times = all.iter().flat_map(|series| &series.time_s).map(|t| t - record.origin_s);
     let readings = all.iter().flat_map(|series| &series.value);
-    let before = times.zip(readings).take_while(|(t, _)| *t <= 0.0);
+    let until_s = if run.kind == RunKind::Forced { f64::INFINITY } else { 0.0 };
+    let before = times.zip(readings).take_while(|(t, _)| *t <= until_s);
     let (time_s, roll_rad): (Vec<f64>, Vec<f64>) = before.unzip();
     Lead::new(&time_s, &roll_rad, rolling_rad_s)
 }

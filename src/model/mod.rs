@@ -22,6 +22,7 @@ mod imposed_changes;
 mod lagging;
 mod linear;
 mod slopes;
+mod smoothed;
 
 pub use effect::{
     Acts, Circumstances, Clip, Effect, Facts, Instant, Layer, Line, Parameter, Recurs, Scope, Seen,
