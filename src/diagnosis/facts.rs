@@ -58,19 +58,8 @@ fn line(values: &[f64], rate_hz: f64, lowest_hz: f64, rolling_hz: f64) -> Option
     stands_out(&powers, n, &|bin| !is_own(bin)).map(|line| line.at(first, rate_hz, n))
 }
 
-/// Lowest frequency that is no slow course, in bins of a windowed record.
-const FIRST_BIN: usize = 3;
-
-/// The strongest line in what a model leaves of a roll.
-pub(super) fn line_left(left: &[f64], rate_hz: f64) -> Option<Line> {
-    let n = left.len();
-    let seen = windowed_powers(left, FIRST_BIN).into_iter();
-    let powers: Vec<f64> = seen.map(|(power, _)| power).collect();
-    stands_out(&powers, n, &|_| true).map(|line| line.at(FIRST_BIN, rate_hz, n))
-}
-
 /// Powers of the values under Hann's window from a bin on, each with its angle per sample.
-fn windowed_powers(values: &[f64], first: usize) -> Vec<(f64, f64)> {
+pub(super) fn windowed_powers(values: &[f64], first: usize) -> Vec<(f64, f64)> {
     let n = values.len();
     let windowed: Vec<f64> = values
         .iter()

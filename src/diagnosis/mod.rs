@@ -36,6 +36,7 @@ mod scatter;
 mod score;
 mod settle;
 mod shaking;
+mod shared_line;
 mod solve;
 mod spectrum;
 mod survey;

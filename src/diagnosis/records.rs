@@ -1,7 +1,7 @@
 //! Causes that a record shows by itself: its steps, and lines in its noise.
 
-use super::facts;
 use super::observation::Observation;
+use super::shared_line::{Shared, Spectrum};
 use super::survey::{Fit, Survey};
 use super::verdict::Cause;
 use crate::inverse::estimate::Estimate;
@@ -13,6 +13,8 @@ pub(super) const SURE: f64 = 14.0;
 /// Deviation [Hz], and as a share, within which two records show one line.
 const ONE_LINE_HZ: f64 = 0.15;
 const ONE_LINE_SHARE: f64 = 0.02;
+/// Share of the best evidence for a line with which the first of two causes is told [-].
+const MOST_OF_A_LINE: f64 = 0.95;
 
 /// What the records show of one effect.
 struct Found {
@@ -25,14 +27,20 @@ struct Found {
 pub(super) struct Shown(Vec<Found>);
 
 impl Shown {
-    /// Of all runs together, with lines in what a model leaves of them that are higher the faster
-    /// the carriage runs.
+    /// Of all runs together, with a line that they share in what a model leaves of them.
     pub(super) fn of(survey: &Survey, fit: &Fit) -> Self {
         let mut found = found(survey);
-        let is_proportional = |found: &Found| matches!(found.recurs, Some(Recurs::PerFroude(_)));
-        if !found.iter().any(is_proportional) {
-            found.extend(found_left(survey, fit));
-        }
+        found.extend(found_left(survey, fit));
+        // One line has one cause: the one that explains it in more runs, the first of equals.
+        let lines = found.iter().filter(|found| found.recurs.is_some());
+        let best = lines.map(|found| found.log_bayes_factor).fold(f64::NEG_INFINITY, f64::max);
+        let mut line_told = false;
+        found.retain(|found| {
+            let explains = found.log_bayes_factor > MOST_OF_A_LINE * best;
+            let keeps = found.recurs.is_none() || (!line_told && explains);
+            line_told |= keeps && found.recurs.is_some();
+            keeps
+        });
         Self(found)
     }
 
@@ -80,59 +88,38 @@ fn found(survey: &Survey) -> Vec<Found> {
             found.push(Found { log_bayes_factor, cause, recurs });
         }
     }
-    // One line has one cause: the one that explains it in more runs, the first of equals.
-    let lines = found.iter().filter(|found| found.recurs.is_some());
-    let best = lines.map(|found| found.log_bayes_factor).fold(f64::NEG_INFINITY, f64::max);
-    let mut line_told = false;
-    found.retain(|found| {
-        let keeps = found.recurs.is_none() || (!line_told && found.log_bayes_factor > 0.95 * best);
-        line_told |= keeps && found.recurs.is_some();
-        keeps
-    });
     found
 }
 
-/// Runs, and times by which the fastest of them is faster than the slowest, in which a line must go
-/// with the speed.
-const RUNS_IN_PROPORTION: usize = 3;
-const SPEEDS_IN_PROPORTION: f64 = 1.3;
-
-/// An effect whose line a model leaves in runs of several speeds, in proportion to these.
+/// The effect whose line the runs share in what a model leaves.
 fn found_left(survey: &Survey, fit: &Fit) -> Option<Found> {
-    let lines = survey.each_run(&|r| {
+    let spectra = survey.each_run(&|r| {
         let run = &survey.runs[r];
         let n = run.roll_rad.len();
         let span_s = run.roll_time_s.last()? - run.roll_time_s.first()?;
-        facts::line_left(&survey.residual(fit, r)[..n], (n - 1) as f64 / span_s)
+        Spectrum::of(&survey.residual(fit, r)[..n], (n - 1) as f64 / span_s, run.at.froude)
     });
-    let all: Vec<(&Observation, Facts)> = survey
+    let shared = Shared::of(&spectra, SURE)?;
+    let facts: Vec<Facts> = survey
         .runs
         .iter()
-        .zip(lines)
-        .map(|(run, line)| (&**run, Facts { line, ..run.facts }))
+        .zip(shared.lines)
+        .map(|(run, line)| Facts { line, ..run.facts })
         .collect();
     let of_effect = |effect: &'static Effect| {
         let Acts::Record(sees) = effect.acts else { return None };
-        let able: Vec<&Observation> =
-            all.iter().map(|(run, _)| *run).filter(|run| (effect.shows)(&run.at)).collect();
-        let seen: Vec<(&Observation, Seen)> = all
-            .iter()
-            .filter(|(run, _)| (effect.shows)(&run.at))
-            .filter_map(|(run, facts)| Some((*run, sees(facts)?)))
-            .filter(|(_, seen)| matches!(seen.recurs, Some(Recurs::PerFroude(_))))
+        let able = survey.runs.iter().zip(&facts).filter(|(run, _)| (effect.shows)(&run.at));
+        let seen: Vec<Seen> = able
+            .filter_map(|(_, facts)| sees(facts))
+            .filter(|seen| seen.recurs.is_some_and(|own| own.is_alike(&shared.recurs)))
             .collect();
-        let seen = one_line(&able, &seen, &|run| [0.0, 0.5 * run.facts.sample_rate_hz])?;
-        let speeds = || seen.iter().map(|(run, _)| run.at.froude);
-        let (slowest, fastest) =
-            (speeds().fold(f64::INFINITY, f64::min), speeds().fold(0.0, f64::max));
-        if seen.len() < RUNS_IN_PROPORTION || fastest < SPEEDS_IN_PROPORTION * slowest {
-            return None;
-        }
-        let log_bayes_factor = seen.iter().map(|(_, seen)| seen.log_bayes_factor).sum();
-        let recurs = seen[0].1.recurs;
-        let seen: Vec<Seen> = seen.into_iter().map(|(_, seen)| seen).collect();
-        let cause = cause(effect, &seen, log_bayes_factor);
-        (log_bayes_factor > SURE).then_some(Found { log_bayes_factor, cause, recurs })
+        let log_bayes_factor: f64 = seen.iter().map(|seen| seen.log_bayes_factor).sum();
+        let told = || Found {
+            log_bayes_factor,
+            cause: cause(effect, &seen, log_bayes_factor),
+            recurs: Some(shared.recurs),
+        };
+        (log_bayes_factor > SURE).then(told)
     };
     effects::all().iter().find_map(of_effect)
 }

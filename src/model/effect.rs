@@ -209,6 +209,11 @@ pub enum Recurs {
 }
 
 impl Recurs {
+    /// Whether two recur by the same law.
+    pub fn is_alike(&self, other: &Self) -> bool {
+        std::mem::discriminant(self) == std::mem::discriminant(other)
+    }
+
     /// Frequency of the line [Hz] at a Froude number.
     pub fn frequency_hz(&self, froude: f64) -> f64 {
         match self {

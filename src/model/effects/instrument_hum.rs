@@ -26,11 +26,19 @@ pub(super) const EFFECT: Effect = Effect {
 fn seen(facts: &Facts) -> Option<Seen> {
     let line = facts.line?;
     let values = vec![(line.amplitude_rad, line.amplitude_sd_rad), (line.frequency_hz, 0.05)];
-    let mains = [50.0, 60.0, 100.0].map(|hz| folded(hz, facts.sample_rate_hz));
-    let is_mains = mains.iter().any(|hz| (hz - line.frequency_hz).abs() < 0.3);
+    let is_near = |hz: f64| (hz - line.frequency_hz).abs() < MAINS_OFF_HZ;
+    let is_mains = mains_hz(facts.sample_rate_hz).into_iter().any(is_near);
     let log_bayes_factor =
         if is_mains || facts.froude < 0.01 { line.log_bayes_factor } else { -1.0 };
     Some(Seen { log_bayes_factor, values, recurs: Some(Recurs::Fixed(line.frequency_hz)) })
+}
+
+/// How far a line of the mains may be off [Hz].
+pub const MAINS_OFF_HZ: f64 = 0.3;
+
+/// Where the mains, and the double of those of Europe, show when sampled at a rate [Hz].
+pub fn mains_hz(sample_rate_hz: f64) -> [f64; 3] {
+    [50.0, 60.0, 100.0].map(|hz| folded(hz, sample_rate_hz))
 }
 
 /// Where a frequency shows when sampled at `rate_hz`.

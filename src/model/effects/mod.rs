@@ -48,6 +48,8 @@ mod tank_unsteady_speed;
 mod tank_wall_reflection;
 mod unnamed_by_quadrant;
 
+pub use instrument_hum::{MAINS_OFF_HZ, mains_hz};
+
 use super::effect::{Circumstances, Effect};
 use super::term::Base;
 
