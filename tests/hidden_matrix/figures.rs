@@ -58,6 +58,7 @@ pub(crate) fn append(page: &mut String, outcomes: &[Value]) {
     )
     .expect("text");
     asked(page, &right);
+    crate::bias::append(page, &right);
 }
 
 /// How often the runs that were asked for decide: all of them, and those told as deciding ones.

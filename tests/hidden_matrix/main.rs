@@ -9,6 +9,7 @@
 mod hidden_tank;
 
 mod arguments;
+mod bias;
 mod cells;
 mod count;
 mod coverage;

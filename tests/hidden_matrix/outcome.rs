@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use crate::bias;
 use crate::coverage::covered;
 use crate::hidden_tank::campaign::{Asked, Campaign};
 use crate::hidden_tank::effects::labels::MISLABELLED;
@@ -64,7 +65,7 @@ pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
     let mut line = json!({
         "name": asked.name(), "hidden": asked.hidden, "size": asked.size,
         "set": asked.set.name(), "seed": asked.seed, "scatter": asked.scatter,
-        "keels": campaign.keels, "lambda": lambda,
+        "keels": campaign.keels, "lambda": lambda, "truth": bias::truth(&campaign),
         "lambda_beside": lambda_beside, "seconds": seconds,
     });
     let verdict = match answer {
@@ -110,7 +111,7 @@ fn tell(line: &mut Value, verdict: &Verdict) {
         .map(|cause| cause["parameters"].clone())
         .collect::<Vec<_>>()
         .into();
-    for part in ["gain", "bias", "next_run", "residual"] {
+    for part in ["gain", "bias", "next_run"] {
         line[part] = json[part].clone();
     }
 }
