@@ -97,7 +97,7 @@ fn matrix(arguments: &Arguments) {
     let next = AtomicUsize::new(0);
     let work = || {
         while let Some(asked) = cells.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let line = outcome::of(asked, &arguments.program);
+            let line = outcome::of(asked, &arguments.program, arguments.is_brief);
             println!(
                 "{:60} lambda {} -> {} {}",
                 asked.name(),

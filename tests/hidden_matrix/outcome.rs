@@ -54,8 +54,8 @@ fn lambdas_beside(campaign: &Campaign) -> Vec<f64> {
     beside.map(|lambda| (lambda * 10.0).round() / 10.0).to_vec()
 }
 
-/// Draws, plays, diagnoses and scores a campaign.
-pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
+/// Draws, plays, diagnoses and scores a campaign; by what is asked briefly alone on request.
+pub(crate) fn of(asked: &Asked, program: &Path, is_brief: bool) -> Value {
     let campaign = Campaign::draw(asked);
     let lambda = lambdas(&campaign);
     let lambda_beside = lambdas_beside(&campaign);
@@ -92,12 +92,15 @@ pub(crate) fn of(asked: &Asked, program: &Path) -> Value {
     line["values"] =
         campaign.effects.iter().map(|effect| json!(effect.values)).collect::<Vec<_>>().into();
     line["covered"] = covered(&campaign, &verdict.json["causes"]);
+    tell(&mut line, &verdict);
+    if is_brief {
+        return line;
+    }
     if matches!(outcome, Outcome::Named | Outcome::InClass) {
         line["foretold_rmse_deg"] =
             json!(foretold::rmse_deg(&campaign, &foretold::stretches(&verdict.json)));
     }
     line["decided"] = json!(decides(&campaign, &verdict, program));
-    tell(&mut line, &verdict);
     line
 }
 

@@ -25,6 +25,10 @@ const SHARED: usize = 5;
 const SHARED_SD: [f64; SHARED] = [1.0, 1.0, 3.0, 0.10, 0.02];
 /// Steps of the derivatives by differences.
 const SHARED_STEP: [f64; SHARED] = [1e-3, 1e-2, 1e-2, 1e-5, 1e-5];
+/// The restoring among these, and where it may start: a long decay that is a cycle off has a
+/// minimum of its own.
+const RESTORING: usize = 4;
+const RESTORING_STARTS: [f64; 5] = [0.0, -0.04, 0.04, -0.08, 0.08];
 /// Unknowns of one run: roll and roll rate at its start, or amplitude and phase; two of scatter.
 const OWN: usize = 4;
 /// Prior standard deviation and difference step of the start of a run [rad], [rad/s].
@@ -78,7 +82,7 @@ fn least(campaign: &Campaign, hidden: &[Effect], beside: Option<&Effect>, start:
         priors.extend(own);
     }
     let model = |x: &[f64], index: usize| modelled(campaign, &targets[index], x, beside, index);
-    let parts = |x: &[f64], with_slopes: bool| {
+    let parts = |x: &[f64], with_slopes: bool| -> Vec<Part> {
         (0..targets.len())
             .map(|index| {
                 let residuals = model(x, index);
@@ -99,7 +103,16 @@ fn least(campaign: &Campaign, hidden: &[Effect], beside: Option<&Effect>, start:
             })
             .collect()
     };
-    minimise(x, &priors, 12, parts).sum
+    let squares = |x: &[f64]| -> f64 {
+        parts(x, false).iter().flat_map(|part| &part.residuals).map(|r| r * r).sum()
+    };
+    let starts = RESTORING_STARTS.map(|share| {
+        let mut start = x.clone();
+        start[RESTORING] = share;
+        (squares(&start), start)
+    });
+    let nearest = starts.into_iter().min_by(|(a, _), (b, _)| a.total_cmp(b));
+    minimise(nearest.map_or(x, |(_, start)| start), &priors, 12, parts).sum
 }
 
 /// What is left of the hidden effect where another that a program names is fitted beside the base;
