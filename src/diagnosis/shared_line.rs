@@ -92,8 +92,8 @@ impl Shared {
         sure.max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor))
     }
 
-    /// Whether runs enough show it for themselves: half of those in whose band it lies, and where it
-    /// goes with the speed some of several speeds.
+    /// Whether runs enough show it for themselves: half of those in whose band it lies, and where
+    /// it goes with the speed some of several speeds.
     fn is_shown(&self, runs: &[Option<Spectrum>]) -> bool {
         let line = |run: &Spectrum| run.near(self.recurs.frequency_hz(run.froude));
         let n_able = runs.iter().flatten().filter(|run| line(run).is_some()).count();

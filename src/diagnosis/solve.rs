@@ -7,7 +7,7 @@ use super::scatter::{Scatter, deviation, scatters, spread};
 use super::survey::{Extension, Fit, N_LAW, Survey};
 
 const LOG_SCALE_SD: f64 = 0.03;
-/// Prior standard deviation of `bk` as a multiple of `b0`: kappa of the seed paper is 12.
+/// Prior standard deviation of `bk` as a multiple of the usual damping: kappa of the seed paper is 12.
 const KAPPA_SD: f64 = 30.0;
 
 /// Numbers by which a run deviates from its law.
@@ -147,8 +147,8 @@ pub(super) fn add_prior(all: &mut Products, column: usize, off_centre: f64, sd: 
 
 fn add_priors(survey: &Survey, fit: &Fit, layout: &Layout, all: &mut Products) {
     for (c, law) in fit.laws.iter().enumerate() {
-        let size = survey.runs[survey.members(c)[0]].at.b1_per_s;
-        add_prior(all, N_LAW * c + 2, law.numbers[2], KAPPA_SD * size);
+        let sd = KAPPA_SD * survey.usual_damping_per_s(c);
+        add_prior(all, N_LAW * c + 2, law.numbers[2], sd);
         add_prior(all, N_LAW * c + 3, law.numbers[3], 20.0);
     }
     add_prior(all, layout.scale(), fit.log_scale, LOG_SCALE_SD);

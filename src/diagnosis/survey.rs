@@ -226,6 +226,14 @@ impl Survey {
         }
     }
 
+    /// Linear damping of the middling run of a condition [1/s]: any one may be ill identified.
+    pub(super) fn usual_damping_per_s(&self, condition: usize) -> f64 {
+        let members = self.members(condition).into_iter();
+        let mut all: Vec<f64> = members.map(|run| self.runs[run].at.b1_per_s).collect();
+        let middle = all.len() / 2;
+        *all.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+
     /// Where a run starts: at its own numbers, or at those of a middling run or without cubic
     /// damping where these do better; what a record with crests cut off or an odd law identifies
     /// may be far from any.
