@@ -7,7 +7,7 @@ use super::scatter::{Scatter, deviation, scatters, spread};
 use super::survey::{Extension, Fit, N_LAW, Survey};
 
 const LOG_SCALE_SD: f64 = 0.03;
-/// Prior standard deviation of `bk` as a multiple of the usual damping: kappa of the seed paper is 12.
+/// Prior standard deviation of `bk` as a multiple of the usual damping: kappa of the paper is 12.
 const KAPPA_SD: f64 = 30.0;
 
 /// Numbers by which a run deviates from its law.
