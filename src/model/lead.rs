@@ -11,7 +11,7 @@ use super::term::Base;
 /// Steps a period of roll, as a simulated decay has.
 const STEPS_PER_PERIOD: f64 = 48.0;
 /// What the motion at an instant is read from [periods].
-const WINDOW_PERIODS: f64 = 1.0;
+const WINDOW_PERIODS: f64 = 1.5;
 /// Readings of a period that are not averaged any further.
 const READINGS_PER_PERIOD: f64 = 40.0;
 /// Points without which nothing is followed.
