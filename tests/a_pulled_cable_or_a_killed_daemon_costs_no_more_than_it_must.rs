@@ -100,7 +100,9 @@ fn a_cable_pulled_during_a_decay_ends_the_run_there_and_one_put_back_is_taken_up
     println!("told after {told:?}, back after {back:?}, {:.2} % CPU while away", 100.0 * share);
     assert!(told < Duration::from_secs(1), "{told:?}");
     assert!(back < Duration::from_secs(3), "{back:?}");
-    assert!(share < 0.01, "{share}");
+    // A loop that is busy takes all of a core; without optimisation a slow one is at 1 % by itself.
+    let most = if cfg!(debug_assertions) { 0.03 } else { 0.01 };
+    assert!(share < most, "{share}");
     daemon.wait_for("latency_s=", 2);
     let (status, said) = daemon.terminate();
     assert_eq!(status.code(), Some(0), "{said}");
