@@ -100,9 +100,7 @@ fn a_cable_pulled_during_a_decay_ends_the_run_there_and_one_put_back_is_taken_up
     println!("told after {told:?}, back after {back:?}, {:.2} % CPU while away", 100.0 * share);
     assert!(told < Duration::from_secs(1), "{told:?}");
     assert!(back < Duration::from_secs(3), "{back:?}");
-    // A loop that is busy takes all of a core. In a build for tests the whole daemon takes 1.4 % of
-    // a slow one; what the drivers alone take, optimised, a story of theirs holds to 1 %.
-    assert!(share < 0.03, "{share}");
+    assert!(share < 0.01, "{share}");
     daemon.wait_for("latency_s=", 2);
     let (status, said) = daemon.terminate();
     assert_eq!(status.code(), Some(0), "{said}");

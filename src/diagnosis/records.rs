@@ -1,5 +1,7 @@
 //! Causes that a record shows by itself: its steps, and lines in its noise.
 
+use std::f64::consts::TAU;
+
 use super::observation::Observation;
 use super::shared_line::{Shared, Spectrum};
 use super::survey::{Fit, Survey};
@@ -97,7 +99,8 @@ fn found_left(survey: &Survey, fit: &Fit) -> Option<Found> {
         let run = &survey.runs[r];
         let n = run.roll_rad.len();
         let span_s = run.roll_time_s.last()? - run.roll_time_s.first()?;
-        Spectrum::of(&survey.residual(fit, r)[..n], (n - 1) as f64 / span_s, run.at.froude)
+        let (rate_hz, rolling_hz) = ((n - 1) as f64 / span_s, run.at.rolling_rad_s / TAU);
+        Spectrum::of(&survey.residual(fit, r)[..n], rate_hz, run.at.froude, rolling_hz)
     });
     let shared = Shared::of(&spectra, SURE)?;
     let facts: Vec<Facts> = survey

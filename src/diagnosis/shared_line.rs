@@ -4,16 +4,19 @@ use super::facts::windowed_powers;
 use crate::model::effects::{MAINS_OFF_HZ, mains_hz};
 use crate::model::{Line, Recurs};
 
-/// Lowest frequency that is no slow course, in bins of a windowed record.
-const FIRST_BIN: usize = 3;
+/// Multiple of the roll's own frequency below which a model leaves what it lacks of the roll, which
+/// is no line (EFFECTS.md, section 8: 0.3 to 3 natural frequencies).
+const ABOVE_ROLL: f64 = 3.0;
 /// Values without which there is no spectrum.
 const LEAST_VALUES: usize = 64;
 /// Bins to either side whose powers tell the noise at a bin, and those beside it that do not.
 const NEIGHBOURS: usize = 20;
 const BESIDE: usize = 2;
-/// What a line of unknown amplitude and phase, at one of three bins, costs in evidence.
+/// What a line at one of three bins (ln 3), of an amplitude and a phase that may be twenty times as
+/// many as the noise tells apart (ln 20), costs in evidence; the twenty by judgement.
 const OCCAM: f64 = 4.1;
-/// Power over the noise from which a run shows its line for itself.
+/// Power over the noise from which a run shows its line for itself: noise does one time in fifty at
+/// the highest of three bins.
 const SHOWN: f64 = 5.0;
 /// Runs, and times by which the fastest of them is faster than the slowest, in which a line must go
 /// with the speed.
@@ -25,6 +28,8 @@ pub(super) struct Spectrum {
     froude: f64,
     rate_hz: f64,
     n: usize,
+    /// Its lowest bin.
+    first: usize,
     powers: Vec<f64>,
 }
 
@@ -38,12 +43,16 @@ pub(super) struct Shared {
 }
 
 impl Spectrum {
-    /// That of values at a rate [Hz], of a run at a Froude number; none of too few.
-    pub(super) fn of(left: &[f64], rate_hz: f64, froude: f64) -> Option<Self> {
+    /// That above the roll of what a model leaves at a rate [Hz], of a run at a Froude number that
+    /// rolls at a frequency [Hz]; none of too few values.
+    pub(super) fn of(left: &[f64], rate_hz: f64, froude: f64, rolling_hz: f64) -> Option<Self> {
         let n = left.len();
-        let seen = || windowed_powers(left, FIRST_BIN).into_iter();
-        let powers = if n < LEAST_VALUES { None } else { Some(seen().map(|(p, _)| p).collect()) };
-        Some(Self { froude, rate_hz, n, powers: powers? })
+        let first = (ABOVE_ROLL * rolling_hz * n as f64 / rate_hz).ceil() as usize;
+        if n < LEAST_VALUES || 2 * (first + NEIGHBOURS) > n {
+            return None;
+        }
+        let powers = windowed_powers(left, first).into_iter().map(|(power, _)| power).collect();
+        Some(Self { froude, rate_hz, n, first, powers })
     }
 
     fn resolution_hz(&self) -> f64 {
@@ -54,7 +63,7 @@ impl Spectrum {
     /// band.
     fn near(&self, hz: f64) -> Option<(usize, f64)> {
         let place = (hz / self.resolution_hz()).round() as usize;
-        let middle = place.checked_sub(FIRST_BIN).filter(|bin| *bin < self.powers.len())?;
+        let middle = place.checked_sub(self.first).filter(|bin| *bin < self.powers.len())?;
         let three = middle.saturating_sub(1)..(middle + 2).min(self.powers.len());
         let best = three.max_by(|a, b| self.powers[*a].total_cmp(&self.powers[*b]))?;
         Some((best, self.powers[best] / self.noise(best)))
@@ -74,7 +83,7 @@ impl Spectrum {
         // The Hann window passes half of an amplitude and 3/8 of a power.
         let noise_sd = (self.powers[bin] / excess / (0.375 * n)).sqrt();
         Line {
-            frequency_hz: (FIRST_BIN + bin) as f64 * self.resolution_hz(),
+            frequency_hz: (self.first + bin) as f64 * self.resolution_hz(),
             amplitude_rad: 4.0 * self.powers[bin].sqrt() / n,
             amplitude_sd_rad: noise_sd * (2.0 / n).sqrt(),
             log_bayes_factor: excess - OCCAM,
@@ -165,7 +174,7 @@ mod tests {
                     noise + amplitude * (turn * f64::from(i) + 3.0 * froude).sin()
                 })
                 .collect();
-            Spectrum::of(&left, 100.0, froude)
+            Spectrum::of(&left, 100.0, froude, 1.1)
         };
         froudes.map(&mut run).into()
     }
@@ -179,6 +188,12 @@ mod tests {
         let most = shared.lines.iter().flatten().map(|line| line.log_bayes_factor);
         assert!(most.clone().fold(0.0, f64::max) < 22.0, "{:?}", most.collect::<Vec<_>>());
         assert!(Shared::of(&runs(0.0), 14.0).is_none());
+    }
+
+    #[test]
+    fn what_is_left_within_the_roll_s_own_band_is_no_line() {
+        assert!(Shared::of(&runs(1.0, |froude| 8.0 * froude), 14.0).is_none());
+        assert!(Shared::of(&runs(1.0, |froude| 20.0 * froude), 14.0).is_some());
     }
 
     #[test]
