@@ -113,6 +113,17 @@ fn the_base_takes_up_itself_and_a_cable_but_no_friction() {
 }
 
 #[test]
+fn a_hull_off_its_frequency_leaves_nothing_to_find() {
+    // The largest of the range, in long decays that it puts a cycle off.
+    for seed in [880, 881] {
+        let hidden = ["restoring.natural_frequency"];
+        let campaign = Campaign::draw(&asked(RunSet::Rest, &hidden, 2.0, seed));
+        let lambda = misfit(&campaign, &campaign.effects, None);
+        assert!(lambda < 5.0, "{lambda} of seed {seed}");
+    }
+}
+
+#[test]
 fn cubic_restoring_and_amplitude_inertia_are_one_class_in_decays() {
     let hidden = Campaign::draw(&asked(RunSet::Rest, &["restoring.cubic"], 1.0, 0));
     let beside = Campaign::draw(&asked(RunSet::Rest, &["inertia.amplitude"], 1.0, 0));

@@ -241,4 +241,21 @@ mod tests {
         assert!((inertia.slots[0][0] + 0.8).abs() < 2e-3, "{:?}", inertia.slots);
         assert!((wave.slots[0][2] - 2.41).abs() < 1e-3, "{:?}", wave.slots);
     }
+
+    #[test]
+    fn the_growth_with_speed_is_not_held_by_a_first_run_that_identified_nothing() {
+        let decay = |froude: f64, identified_per_s: f64| {
+            let b1_per_s = 0.02 + 0.2 * froude * froude;
+            let base = Base { natural_rad_s: 2.45, b1_per_s, b3_s: 0.1, log_scale: 0.0 };
+            let mut run = long_decay(&RunState { own: vec![0.3, 0.0, 0.0], base }, &[]);
+            (run.at.froude, run.at.b1_per_s) = (froude, identified_per_s);
+            run
+        };
+        let runs = vec![decay(0.0, 2e-4), decay(0.2, 0.028), decay(0.4, 0.052)];
+        let survey = Survey::new(runs, &Arc::new(Spent::default()));
+        let noise = [ChannelNoise { sd: [NOISE_RAD, 1.0], correlation: [0.0; 2] }; 3];
+        let settled = settle(&survey, survey.first_fit(), &noise);
+        let growth = settled.fit.laws[0].numbers[2];
+        assert!((growth - 0.2).abs() < 0.01, "{growth} 1/s");
+    }
 }
