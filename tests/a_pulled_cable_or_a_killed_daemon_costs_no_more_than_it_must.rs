@@ -92,9 +92,9 @@ fn a_cable_pulled_during_a_decay_ends_the_run_there_and_one_put_back_is_taken_up
             break;
         }
     }
-    let before_s = daemon.cpu_s();
+    let before_s = daemon.exact_cpu_s();
     std::thread::sleep(Duration::from_secs(5));
-    let share = (daemon.cpu_s() - before_s) / 5.0;
+    let share = (daemon.exact_cpu_s() - before_s) / 5.0;
     let put_back = Instant::now();
     tank.port(0).replug();
     daemon.wait_for("linked", 3);
