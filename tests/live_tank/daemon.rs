@@ -95,8 +95,8 @@ impl Daemon {
         ticks.map(|ticks| ticks.parse::<f64>().expect("a count")).sum::<f64>() / 100.0
     }
 
-    /// Processor time that its living threads have taken [s], to the nanosecond: what is nearly idle
-    /// takes less than the ticks of [`Daemon::cpu_s`] tell apart.
+    /// Processor time that its living threads have taken [s], to the nanosecond: what is nearly
+    /// idle takes less than the ticks of [`Daemon::cpu_s`] tell apart.
     pub(crate) fn exact_cpu_s(&self) -> f64 {
         let tasks = fs::read_dir(format!("/proc/{}/task", self.child.id())).expect("it lives");
         let taken = tasks.filter_map(|task| {
