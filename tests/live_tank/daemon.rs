@@ -98,14 +98,24 @@ impl Daemon {
     /// Processor time that its living threads have taken [s], to the nanosecond: what is nearly
     /// idle takes less than the ticks of [`Daemon::cpu_s`] tell apart.
     pub(crate) fn exact_cpu_s(&self) -> f64 {
-        let tasks = fs::read_dir(format!("/proc/{}/task", self.child.id())).expect("it lives");
-        let taken = tasks.filter_map(|task| {
-            let told = fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
-            told.split_whitespace().next()?.parse::<f64>().ok()
-        });
-        let taken_ns: f64 = taken.sum();
+        let taken_ns = self.scheduled(0);
         assert!(taken_ns > 0.0, "the kernel tells no schedstat");
         taken_ns * 1e-9
+    }
+
+    /// How often its living threads were given a processor, all together.
+    pub(crate) fn wakes(&self) -> f64 {
+        self.scheduled(2)
+    }
+
+    /// Sum over its living threads of a column of the scheduler's own figures.
+    fn scheduled(&self, column: usize) -> f64 {
+        let tasks = fs::read_dir(format!("/proc/{}/task", self.child.id())).expect("it lives");
+        let figures = tasks.filter_map(|task| {
+            let told = fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
+            told.split_whitespace().nth(column)?.parse::<f64>().ok()
+        });
+        figures.sum()
     }
 
     /// Its resident memory [MB].
