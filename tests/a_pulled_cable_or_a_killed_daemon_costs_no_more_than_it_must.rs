@@ -102,7 +102,7 @@ fn a_cable_pulled_during_a_decay_ends_the_run_there_and_one_put_back_is_taken_up
     let back = put_back.elapsed();
     tank.port(1).replug();
     println!(
-        "told after {told:?}, back after {back:?}, {:.2} % CPU and {wakes_per_s} wakes/s while away",
+        "told after {told:?}, back after {back:?}, away {:.2} % CPU and {wakes_per_s} wakes/s",
         100.0 * share
     );
     assert!(told < Duration::from_secs(1), "{told:?}");
