@@ -12,6 +12,9 @@ use rolltank::report::{DIAGNOSIS_SCHEMA, diagnosis_json, diagnosis_text};
 use serde_json::Value;
 
 use super::campaign_folder::rolltank;
+use super::hidden_tank::campaign::{Asked, Campaign, SCATTER};
+use super::hidden_tank::folder::play;
+use super::hidden_tank::plan::RunSet;
 use super::json_schema;
 
 /// Two decays at rest, with whatever is wrong with their channel.
@@ -111,6 +114,29 @@ fn the_moment_that_the_simulation_lacks_is_shown_before_and_after_it_is_named() 
     }
     let index = fs::read_to_string(folder.path().join("told/index.html")).unwrap();
     assert!(index.contains("href=\"diagnosis.html\""));
+}
+
+#[test]
+fn where_no_release_makes_a_run_the_reasons_are_told_with_what_beats_like_that() {
+    let asked = Asked {
+        set: RunSet::Rest,
+        hidden: vec!["restoring.free_surface".to_owned()],
+        size: 2.0,
+        seed: 883,
+        scatter: SCATTER,
+    };
+    let place = tempfile::tempdir().expect("a folder can be made");
+    let played = play(&Campaign::draw(&asked), place.path());
+    let told = rolltank(&played.folder, &["diagnose", "."]);
+    assert_eq!(told.exit, 3, "{}", told.out);
+    assert!(told.out.starts_with("no run could be diagnosed\n\nnot used:\n"), "{}", told.out);
+    for said in ["pass_01", "pass_04", "the roll left its course", "hint: in 4 recordings"] {
+        assert!(told.out.contains(said), "{said}: {}", told.out);
+    }
+    let json = rolltank(&played.folder, &["diagnose", ".", "--json"]);
+    assert_eq!(json.exit, 3, "{}", json.out);
+    let document: Value = serde_json::from_str(&json.out).expect("JSON");
+    assert_eq!(document["verdict"], Value::Null, "{document:#}");
 }
 
 #[test]

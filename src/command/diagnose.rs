@@ -1,16 +1,19 @@
 //! `rolltank diagnose`: what the simulation gets wrong, its cause, and what mending it gains.
 
+use std::collections::BTreeSet;
 use std::fs;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Exit, Failure, heap};
+use super::{Exit, Failure, heap, tables};
 use crate::campaign::{self, Campaign};
 use crate::model::model_file::ModelFile;
 use crate::pipeline::{self, Observed, Options};
 use crate::report;
+use crate::results::Results;
+use crate::run::LEFT_ITS_COURSE;
 
 /// Show what the simulation gets wrong, name the cause, and measure what mending it gains
 #[derive(Debug, Args)]
@@ -30,7 +33,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
     let campaign = campaign::read(&arguments.campaign)?;
     let mut observed = Observed::default();
     let options = Options { keep_histories: false, ..Options::default() };
-    pipeline::replay(&campaign, &options, &mut |_| {}, &mut |learnt| {
+    let results = pipeline::replay(&campaign, &options, &mut |_| {}, &mut |learnt| {
         observed.hear(learnt, &campaign);
         Ok(())
     })?;
@@ -47,8 +50,28 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Fa
         out.write_all(report::diagnosis_json(diagnosis.as_ref()).as_bytes())?;
     } else {
         out.write_all(report::diagnosis_text(diagnosis.as_ref()).as_bytes())?;
+        if diagnosis.is_none() {
+            why_none(out, &results)?;
+        }
     }
     Ok(exit)
+}
+
+/// Why no run of the campaign could be diagnosed.
+fn why_none(out: &mut dyn Write, results: &Results) -> io::Result<()> {
+    tables::not_used(out, results)?;
+    let left = results.rejected.iter().filter(|one| one.reason.contains(LEFT_ITS_COURSE));
+    let of: BTreeSet<&str> = left.map(|one| one.recording.as_str()).collect();
+    if of.len() > 1 {
+        let n = of.len();
+        writeln!(
+            out,
+            "\nhint: in {n} recordings {LEFT_ITS_COURSE}; where no hand touched the model so often, \
+             it beats with\nsomething: water inside it (drain or block the tank), or a clamp that \
+             gives way"
+        )?;
+    }
+    Ok(())
 }
 
 fn write_model(campaign: &Campaign, model: &ModelFile) -> Result<(), Failure> {

@@ -9,10 +9,21 @@ use crate::results::Results;
 /// Stretches told on a terminal; the JSON and the report hold every one.
 const STRETCHES_TOLD: usize = 10;
 
-/// The damping table, the laws and the first of the stretches that were not used.
+/// The damping table, the laws and what was left out.
 pub(super) fn human(out: &mut dyn Write, results: &Results) -> io::Result<()> {
     writeln!(out, "{}", report::damping_table(results).trim_end())?;
-    let (refused, changeovers) = results.refusals_and_changeovers();
+    not_used(out, results)?;
+    let (_, changeovers) = results.refusals_and_changeovers();
+    if !changeovers.is_empty() {
+        let n = changeovers.len();
+        writeln!(out, "\n{n} changeovers between excitations left out; the report lists them")?;
+    }
+    Ok(())
+}
+
+/// The first of the stretches that were not used, with their reasons.
+pub(super) fn not_used(out: &mut dyn Write, results: &Results) -> io::Result<()> {
+    let (refused, _) = results.refusals_and_changeovers();
     if !refused.is_empty() {
         writeln!(out, "\nnot used:")?;
     }
@@ -22,10 +33,6 @@ pub(super) fn human(out: &mut dyn Write, results: &Results) -> io::Result<()> {
     }
     if let Some(more) = refused.len().checked_sub(STRETCHES_TOLD).filter(|more| *more > 0) {
         writeln!(out, "  and {more} more; the report and --json hold every one")?;
-    }
-    if !changeovers.is_empty() {
-        let n = changeovers.len();
-        writeln!(out, "\n{n} changeovers between excitations left out; the report lists them")?;
     }
     Ok(())
 }

@@ -41,6 +41,7 @@ pub use finder::RunFinder;
 pub use limits::Limits;
 pub(crate) use noise::SampleNoise;
 pub use timing::Timing;
+pub use usable_end::LEFT_ITS_COURSE;
 
 /// Values of one channel with their times, both of the same length.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -17,6 +17,9 @@ const DROPPED: f64 = 1.0 / 6.0;
 const DROPPED_MAX_FREE: f64 = 0.55;
 const DROPPED_MAX_DRIVEN: f64 = 0.45;
 
+/// What a reason says where the roll did not go on as a decay or a driven roll does.
+pub const LEFT_ITS_COURSE: &str = "the roll left its course";
+
 /// Why and when a run really ends.
 #[derive(Debug)]
 pub(super) struct Usable {
@@ -75,7 +78,7 @@ pub(super) fn find(
         (true, RunKind::Decay) => RunEnd::Caught,
         (true, RunKind::Forced) => RunEnd::ExcitationChanged,
     };
-    let why = format!("{}: the roll left its course at {left_s:.1} s", end.clause());
+    let why = format!("{}: {LEFT_ITS_COURSE} at {left_s:.1} s", end.clause());
     let end_s = turn_s.max(left_s - 2.0 * dropped_max * half_s);
     // A rod that lets go is gone when its force shows it; the roll may leave earlier or later.
     let [roll_s, drive_s] = departures_s;
