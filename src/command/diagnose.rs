@@ -66,8 +66,8 @@ fn why_none(out: &mut dyn Write, results: &Results) -> io::Result<()> {
         let n = of.len();
         writeln!(
             out,
-            "\nhint: in {n} recordings {LEFT_ITS_COURSE}; where no hand touched the model so often, \
-             it beats with\nsomething: water inside it (drain or block the tank), or a clamp that \
+            "\nhint: in {n} recordings {LEFT_ITS_COURSE}; where no hand touched the model so often,\n\
+             it beats with something: water inside it (drain or block the tank), or a clamp that\n\
              gives way"
         )?;
     }
