@@ -66,9 +66,9 @@ fn why_none(out: &mut dyn Write, results: &Results) -> io::Result<()> {
         let n = of.len();
         writeln!(
             out,
-            "\nhint: in {n} recordings {LEFT_ITS_COURSE}; where no hand touched the model so often,\n\
-             it beats with something: water inside it (drain or block the tank), or a clamp that\n\
-             gives way"
+            "\nhint: in {n} recordings {LEFT_ITS_COURSE}; where no hand touched the model so\n\
+             often, it beats with something: water inside it (drain or block the tank), or a\n\
+             clamp that gives way"
         )?;
     }
     Ok(())
