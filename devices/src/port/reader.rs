@@ -60,6 +60,9 @@ impl LinkThread {
     /// Asks the thread to close the port and to end, without waiting for it.
     pub fn stop(&self) {
         self.stop.store(true, Ordering::Release);
+        if let Some(thread) = &self.thread {
+            thread.thread().unpark();
+        }
     }
 }
 
@@ -174,11 +177,9 @@ impl Link {
 
     /// Waits before the next attempt, but not for a stop.
     fn rest(&self) {
-        for _ in 0..RETRY_MS / IDLE_MAX_MS {
-            if self.stopped() {
-                return;
-            }
-            thread::sleep(Duration::from_millis(IDLE_MAX_MS));
+        // Woken before its time for no reason, it only tries earlier.
+        if !self.stopped() {
+            thread::park_timeout(Duration::from_millis(RETRY_MS));
         }
     }
 
