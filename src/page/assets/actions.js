@@ -82,26 +82,36 @@ export function wireActions(renew) {
     if (button) act(button.dataset.act, button.dataset);
   });
 
+  // What can be undone is offered until it is closed or the next deed is told: no one is hurried.
+  const place = byId("told");
+  let leaving;
+  const tell = (...what) => {
+    place.dataset.shown = what.length ? "yes" : "no";
+    place.replaceChildren(...what);
+  };
+  place.addEventListener("click", (event) => {
+    if (event.target.matches(".close")) tell();
+  });
   const done = ({ title }, told) => {
-    const place = byId("told");
+    clearTimeout(leaving);
     const text = document.createElement("span");
-    text.textContent = `Done: ${title}.`;
-    place.replaceChildren(text);
+    text.textContent = `Done: ${title}. `;
     const number = /"number": (\d+)/.exec(told)?.[1];
-    if (number) {
-      const undo = document.createElement("button");
-      undo.type = "button";
-      undo.dataset.act = "undo";
-      undo.dataset.of = number;
-      undo.textContent = "Undo";
-      place.append(" ", undo);
+    if (number === undefined) {
+      tell(text);
+      leaving = setTimeout(tell, 15000);
+      return;
     }
-    place.dataset.shown = "yes";
-    clearTimeout(place.timer);
-    place.timer = setTimeout(() => {
-      place.dataset.shown = "no";
-      place.replaceChildren();
-    }, 15000);
+    const undo = document.createElement("button");
+    undo.type = "button";
+    undo.dataset.act = "undo";
+    undo.dataset.of = number;
+    undo.textContent = "Undo";
+    const close = document.createElement("button");
+    close.type = "button";
+    close.className = "close";
+    close.textContent = "Close";
+    tell(text, undo, " ", close);
   };
   return act;
 }
