@@ -167,6 +167,84 @@ fn no_layer_names_one_above_it() {
     report(&mistakes);
 }
 
+/// The folders of `src/diagnosis`, top first; each may name those below it.
+const STOREYS: [&str; 5] = ["told", "next_run", "search", "fit", "record"];
+
+/// The files of `src/diagnosis` that one of them names, as paths from there without their endings.
+fn files_named(text: &str, path: &str, all: &BTreeSet<String>) -> BTreeSet<String> {
+    let own_folder =
+        path.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
+    let is_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
+    let mut named = BTreeSet::new();
+    for (prefix, folder) in [("super::", own_folder.as_str()), ("crate::diagnosis::", "")] {
+        for (at, _) in text.match_indices(prefix).filter(|(at, _)| !text[..*at].ends_with(is_path))
+        {
+            let rest = &text[at + prefix.len()..];
+            let rest = &rest[..rest.find(|c| !is_path(c)).unwrap_or(rest.len())];
+            let words: Vec<&str> = rest.split("::").collect();
+            let paths = (1..=words.len()).map(|n| format!("{folder}{}", words[..n].join("/")));
+            named.extend(paths.filter(|path| all.contains(path)));
+        }
+    }
+    named
+}
+
+#[test]
+fn the_files_of_the_diagnosis_stand_on_one_another_and_never_in_a_circle() {
+    let files: Vec<(String, String)> = rust_files()
+        .into_iter()
+        .filter_map(|File { path, text }| {
+            let inside = path.strip_prefix("src/diagnosis/")?.strip_suffix(".rs")?;
+            let program = text.split("#[cfg(test)]").next().unwrap_or_default().to_owned();
+            (!inside.ends_with("mod")).then(|| (inside.to_owned(), program))
+        })
+        .collect();
+    let all: BTreeSet<String> = files.iter().map(|(path, _)| path.clone()).collect();
+    let storey = |path: &str| {
+        let folder = path.split_once('/').map(|(folder, _)| folder);
+        folder.map(|folder| STOREYS.iter().position(|one| *one == folder).expect("a storey"))
+    };
+    let mut mistakes = Vec::new();
+    let mut standing: Vec<(String, BTreeSet<String>)> = Vec::new();
+    for (path, text) in &files {
+        let named = files_named(text, path, &all);
+        for other in &named {
+            if let (Some(own), Some(its)) = (storey(path), storey(other))
+                && its < own
+            {
+                mistakes.push(format!("{path} names {other} above it"));
+            }
+        }
+        if text.contains("use super::{") || text.contains("use crate::diagnosis::{") {
+            mistakes.push(format!("{path}: one file a line, so that storeys show"));
+        }
+        standing.push((path.clone(), named));
+    }
+    // What stands on nothing that is left is taken away, until only circles are left.
+    loop {
+        let left: BTreeSet<String> = standing.iter().map(|(path, _)| path.clone()).collect();
+        let n = standing.len();
+        standing.retain(|(_, named)| named.iter().any(|other| left.contains(other)));
+        if standing.len() == n {
+            break;
+        }
+    }
+    let circle = |(path, _): &(String, _)| format!("{path} stands in a circle or on one");
+    mistakes.extend(standing.iter().map(circle));
+    report(&mistakes);
+}
+
+#[test]
+fn a_file_of_the_diagnosis_is_seen_however_it_is_named() {
+    let all = ["fit/survey", "fit/solve", "whole"].map(str::to_owned).into();
+    let named = |text: &str, path: &str| files_named(text, path, &all).into_iter().next();
+    let survey = Some("fit/survey".to_owned());
+    assert_eq!(named("use super::survey::Fit;", "fit/solve"), survey);
+    assert_eq!(named("let x = crate::diagnosis::fit::survey::new();", "told/gain"), survey);
+    assert_eq!(named("use super::fit::survey::{Fit, Survey};", "whole"), survey);
+    assert_eq!(named("use super::survey::Fit;", "told/gain"), None);
+}
+
 #[test]
 fn a_name_from_above_is_seen_however_it_is_written() {
     let upward = ["use crate::pipeline::replay;", "let x = super::pipeline::replay();"];

@@ -6,11 +6,11 @@
 
 use std::sync::Arc;
 
-use super::observation::Observation;
-use super::run_fit::{ChannelNoise, predict};
-use super::scatter::Scatter;
-use super::solve::followed;
-use super::survey::{Extension, Fit, Survey};
+use super::fit::run_fit::{ChannelNoise, predict};
+use super::fit::scatter::Scatter;
+use super::fit::solve::followed;
+use super::fit::survey::{Extension, Fit, Survey};
+use super::record::observation::Observation;
 use crate::campaign::Campaign;
 use crate::model::effects;
 use crate::model::model_file::ModelFile;

@@ -1,56 +1,33 @@
 //! What the simulation gets wrong: shown, named, mended, and the gain measured.
 //!
-//! All runs of a campaign are fitted together by the base model. One pass of sensitivities scores
-//! every effect of the table (`score`); the best are fitted in full (`settle`) and weighed by
-//! their evidence, so that the model grows by one effect at a time (`growth`) until nothing more
-//! is to be named.
+//! Every run is seen as an observation (`record`), and all runs of a campaign are fitted together
+//! by the base model (`fit`). One pass of sensitivities scores every effect of the table; the best
+//! are fitted in full and weighed by their evidence, so that the model grows by one effect at a
+//! time (`search`) until nothing more is to be named. Then it is said which run would say most
+//! (`next_run`), and everything is put into words and figures (`told`). Each folder uses those
+//! before it alone, and no file in it is used by one that it uses.
 
-mod added;
-mod alike;
-mod backward;
-mod clipping;
-mod cores;
+mod cause;
 mod correction;
-mod cost;
-mod elimination;
-mod entry;
-mod facts;
-mod foretold;
-mod gain;
-mod growth;
-mod known;
-mod layout;
-mod leftover;
+mod fit;
 mod next_run;
-mod observation;
-mod onset;
-mod over_scatters;
-mod partial;
-mod plan;
-mod records;
-mod repeating;
-mod reseated;
-mod reversed;
-mod run_fit;
-mod scatter;
-mod score;
-mod settle;
+mod record;
+mod search;
 mod shaking;
-mod shared_line;
-mod solve;
-mod spectrum;
-mod survey;
-mod trial;
-mod unexplained;
-mod verdict;
-mod wavering;
+mod shown;
+mod told;
 mod whole;
 
+pub use cause::Cause;
 pub use correction::{Corrected, corrected};
-pub use leftover::Leftover;
-pub use next_run::{NextRun, PlannedRun};
-pub use observation::Observation;
-pub use reversed::Reversed;
-pub use unexplained::Unexplained;
-pub use verdict::{Bias, Cause, Change, Diagnosis, Gain, Verdict};
+pub use fit::leftover::Leftover;
+pub use next_run::most_telling::NextRun;
+pub use next_run::plan::PlannedRun;
+pub use record::observation::Observation;
+pub use record::reversed::Reversed;
+pub use told::bias::Bias;
+pub use told::change::Change;
+pub use told::gain::Gain;
+pub use told::unexplained::Unexplained;
+pub use told::verdict::{Diagnosis, Verdict};
 pub use whole::{Gathered, diagnose};

@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::observation::Observation;
-use super::records::Shown;
-use super::survey::{Fit, Survey};
+use super::fit::survey::{Fit, Survey};
+use super::record::observation::Observation;
+use super::shown::Shown;
 use crate::inverse::forced::harmonic::FourierSeries;
 use crate::model::{Line, Recurs};
 

@@ -3,16 +3,17 @@
 use std::cell::OnceCell;
 use std::sync::Arc;
 
-use super::alike::{SAME, is_approximate};
-use super::cost::Spent;
-use super::entry::CRUMB_OF_EVIDENCE;
-use super::growth::{Entered, Grown, Stem, grow};
-use super::observation::Observation;
-use super::reversed::Reversed;
-use super::settle::settle;
+use super::fit::cost::Spent;
+use super::fit::settle::settle;
+use super::fit::survey::{Fit, Survey};
+use super::record::observation::Observation;
+use super::record::reversed::Reversed;
+use super::search::alike::{SAME, is_approximate};
+use super::search::entered::Entered;
+use super::search::entry::CRUMB_OF_EVIDENCE;
+use super::search::growth::{Grown, Stem, grow};
 use super::shaking;
-use super::survey::{Fit, Survey};
-use super::verdict::{Diagnosis, Verdict, told};
+use super::told::verdict::{Diagnosis, Verdict, told};
 use crate::campaign::Tank;
 use crate::run::RunKind;
 
@@ -118,7 +119,7 @@ fn explained(
     tell: &dyn Fn(&Survey, &Grown) -> Diagnosis,
 ) -> Option<Whole> {
     let short = whole.iter().map(|run| run.clone().first_periods(FIRST_PERIODS));
-    let spent = &survey.spent;
+    let spent = survey.cost.spent();
     let short = Survey::new(short.collect(), spent);
     let whole = Survey::new(whole, spent);
     let told_from = |stem| {
@@ -137,7 +138,7 @@ fn explained(
     let ways: [&dyn Fn() -> Option<Whole>; 4] = [&first, &second, &third, &fourth];
     let mut best: Option<Whole> = None;
     for way in ways {
-        if best.as_ref().is_some_and(|best| left(&best.diagnosis) <= 0.0 || whole.is_spent()) {
+        if best.as_ref().is_some_and(|best| left(&best.diagnosis) <= 0.0 || whole.cost.is_spent()) {
             break;
         }
         let Some(other) = way() else { continue };

@@ -1,0 +1,265 @@
+//! Gauss-Newton on all runs together, to the most probable numbers of a model.
+
+use super::run_fit::{ChannelNoise, Summary};
+use super::solve::{Solution, followed, moved, prior_misfit, solve, solve_best};
+use super::survey::{Fit, Survey};
+
+/// A model at its most probable numbers.
+#[derive(Clone)]
+pub(in crate::diagnosis) struct Settled {
+    pub(in crate::diagnosis) fit: Fit,
+    pub(in crate::diagnosis) solution: Solution,
+    /// Logarithm of the evidence over all scatters.
+    pub(in crate::diagnosis) log_evidence: f64,
+    pub(in crate::diagnosis) summaries: Vec<Summary>,
+    /// Misfit that it is still promised to lose; that much is not in the evidence.
+    pub(in crate::diagnosis) promised: f64,
+}
+
+/// Steps after which a model that still moves is taken where it is.
+const MOST_STEPS: usize = 12;
+/// The same of a model that may yet be the best.
+const MOST_STEPS_MORE: usize = 12;
+/// Steps that the runs' own numbers are given to follow a step of the campaign's.
+const FOLLOWING: usize = 3;
+/// What they may still gain by it when the campaign steps again.
+const UNFOLLOWED: f64 = 1.0;
+/// Promised gain in misfit below which a fit has settled.
+const SMALL_GAIN: f64 = 0.05;
+
+/// Factor between shares of a step that are tried, and the least of them: five tries, by judgement.
+const SMALLER: f64 = 0.3;
+const LEAST_SHARE: f64 = 0.008;
+/// Share of a step over which it is seen how the readings bend: far above rounding, and short
+/// against the step that bends; by judgement.
+const LITTLE: f64 = 0.1;
+
+/// Settles a model from where it stands.
+pub(in crate::diagnosis) fn settle(survey: &Survey, start: Fit, noise: &[ChannelNoise]) -> Settled {
+    settle_in(MOST_STEPS, survey, start, noise)
+}
+
+/// Settles a model further that has not settled in the steps that any is given.
+pub(in crate::diagnosis) fn settle_further(
+    survey: &Survey,
+    start: Fit,
+    noise: &[ChannelNoise],
+) -> Settled {
+    settle_in(MOST_STEPS_MORE, survey, start, noise)
+}
+
+fn settle_in(most_steps: usize, survey: &Survey, start: Fit, noise: &[ChannelNoise]) -> Settled {
+    let mut fit = start;
+    let mut summaries = survey.summaries(&fit, noise, &|_| Vec::new());
+    let (mut n_steps, mut share) = (0, 1.0);
+    let (mut n_followed, mut misfit_before) = (0, f64::INFINITY);
+    loop {
+        let (solution, log_evidence) = solve_best(survey, &fit, &summaries);
+        let promised = solution.misfit_here - solution.least_misfit;
+        let own: f64 = summaries.iter().map(|summary| summary.own_gain).sum();
+        let unfollowed = own + solution.unsettled(survey, &fit);
+        if promised + unfollowed < SMALL_GAIN {
+            return Settled { fit, solution, log_evidence, summaries, promised: 0.0 };
+        }
+        // A long record bends the valley: the runs' own numbers follow what the campaign's did
+        // before it steps again, while that brings them lower.
+        let still_falls = misfit_before - solution.misfit_here > SMALL_GAIN;
+        if n_steps > 0 && unfollowed > UNFOLLOWED && n_followed < FOLLOWING && still_falls {
+            misfit_before = solution.misfit_here;
+            fit = followed(survey, &fit, &summaries, &solution.scatter);
+            summaries = survey.summaries(&fit, noise, &|_| Vec::new());
+            n_followed += 1;
+            continue;
+        }
+        let better = if n_steps < most_steps {
+            stepped(survey, &fit, &summaries, &solution, noise, &mut share)
+        } else {
+            None
+        };
+        let Some(better) = better else {
+            // What is promised to a fit that gets no further is no evidence for it.
+            let log_evidence = log_evidence - 0.5 * promised;
+            return Settled { fit, solution, log_evidence, summaries, promised };
+        };
+        (fit, summaries) = better;
+        (n_steps, n_followed, misfit_before) = (n_steps + 1, 0, f64::INFINITY);
+    }
+}
+
+/// A fit that lies lower along the solution's step, summarised; none where there is none.
+///
+/// What is left of a long record turns with every phase that it has run up, so that a step along
+/// what changes at its start soon leaves the valley. Where the whole step does, the readings are
+/// followed to the second order, for ever smaller shares of it (geodesic acceleration: Transtrum
+/// and Sethna 2012, arXiv:1201.5885).
+fn stepped(
+    survey: &Survey,
+    fit: &Fit,
+    summaries: &[Summary],
+    solution: &Solution,
+    noise: &[ChannelNoise],
+    share: &mut f64,
+) -> Option<(Fit, Vec<Summary>)> {
+    let misfit = |summaries: &[Summary]| summaries.iter().map(|s| s.misfit).sum::<f64>();
+    let prior = |fit: &Fit| prior_misfit(survey, fit, &solution.scatter);
+    let here = misfit(summaries) + prior(fit);
+    let is_lower = |next: &Fit| survey.misfit(next, noise) + prior(next) < here;
+    let summarised = |fit: &Fit| survey.summaries(fit, noise, &|_| Vec::new());
+    let whole = moved(survey, fit, summaries, solution, 1.0);
+    if *share < 1.0 {
+        if is_lower(&whole) {
+            *share = 1.0;
+            let there = summarised(&whole);
+            return Some((whole, there));
+        }
+    } else {
+        // It is nearly always lower, and its summaries are those of the next round.
+        let there = summarised(&whole);
+        if misfit(&there) + prior(&whole) < here {
+            return Some((whole, there));
+        }
+    }
+    let bends = bends(survey, fit, summaries, solution);
+    *share = (*share / SMALLER).min(1.0);
+    while *share >= LEAST_SHARE {
+        let along = survey.summaries_less(fit, noise, &bends, *share);
+        let curved = solve(survey, fit, &along, solution.scatter);
+        let next = moved(survey, fit, &along, &curved, *share);
+        if is_lower(&next) {
+            let there = summarised(&next);
+            return Some((next, there));
+        }
+        *share *= SMALLER;
+    }
+    None
+}
+
+/// What the readings of every run bend away by along the whole of a solution's step.
+fn bends(survey: &Survey, fit: &Fit, summaries: &[Summary], solution: &Solution) -> Vec<Vec<f64>> {
+    let by = |share: f64| moved(survey, fit, summaries, solution, share);
+    let (back, on) = (by(-LITTLE), by(LITTLE));
+    survey.each_run(&|run| {
+        let readings = |fit: &Fit| survey.readings(fit, run);
+        let (back, here, on) = (readings(&back), readings(fit), readings(&on));
+        let bend = |((back, here), on)| 0.5 * (back + on - 2.0 * here) / (LITTLE * LITTLE);
+        back.iter().zip(&here).zip(&on).map(bend).collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::super::cost::Spent;
+    use super::super::run_fit::{RunState, predict};
+    use super::super::survey::Extension;
+    use super::*;
+    use crate::diagnosis::record::observation::Observation;
+    use crate::model::effects::effect;
+    use crate::model::lead::Lead;
+    use crate::model::{Base, Circumstances, Facts, Term};
+    use crate::run::RunKind;
+
+    const NOISE_RAD: f64 = 5e-4;
+    const N_SAMPLES: usize = 1000;
+
+    /// A tanker that rolls for 40 periods at rest, under a model that is not yet its own.
+    fn long_decay(state: &RunState, terms: &[Term]) -> Observation {
+        let at = Circumstances {
+            kind: RunKind::Decay,
+            froude: 0.0,
+            speed_m_s: 0.0,
+            natural_rad_s: 2.45,
+            b1_per_s: 0.02,
+            inertia_kg_m2: 135.6,
+            amplitude_rad: state.own[0],
+            rolling_rad_s: state.base.natural_rad_s,
+            span_s: 100.0,
+            gravity_m_s2: 9.81,
+            clear_width_m: None,
+            section: None,
+            sample_rate_hz: 10.0,
+            order: 0,
+            has_moment: false,
+            n_runs: 1,
+            initial_roll_rad: state.own[0],
+            rolled_for_s: f64::INFINITY,
+            since_rest_s: 10.0,
+        };
+        let facts = Facts {
+            quantum_rad: None,
+            line: None,
+            line_band_hz: [3.0, 5.0],
+            n_samples: N_SAMPLES,
+            sample_rate_hz: 10.0,
+            froude: 0.0,
+            clip: None,
+        };
+        let mut run = Observation {
+            id: "long".to_owned(),
+            condition: "bare hull".to_owned(),
+            at,
+            facts,
+            origin_s: 0.0,
+            roll_time_s: (0..N_SAMPLES).map(|k| 0.1 * k as f64).collect(),
+            roll_rad: Vec::new(),
+            moment_time_s: Vec::new(),
+            moment_n_m: Vec::new(),
+            lead: Lead::default(),
+            wavering: None,
+            rough_noise: [NOISE_RAD, 1.0],
+            clock_bounds_s: [None; 2],
+            start: state.own.clone(),
+            base: Base { natural_rad_s: 2.45, b1_per_s: 0.02, b3_s: 0.1, log_scale: 0.0 },
+        };
+        let ripple = |k: usize| NOISE_RAD * std::f64::consts::SQRT_2 * (1.9 * k as f64).sin();
+        let rolls = predict(&run, state, terms);
+        run.roll_rad = rolls.into_iter().enumerate().map(|(k, roll)| roll + ripple(k)).collect();
+        run
+    }
+
+    #[test]
+    fn a_wave_near_the_roll_s_own_frequency_is_fitted_to_its_end_in_a_long_decay() {
+        let of = |id| effect(id).expect("an effect of the table");
+        let (inertia, wave) = (of("inertia.amplitude"), of("tank.residual_wave"));
+        let base = Base { natural_rad_s: 2.463, b1_per_s: 0.019, b3_s: 0.16, log_scale: 0.0 };
+        let truth = RunState { own: vec![0.3, 0.0, 0.0], base };
+        let terms = [
+            Term { effect: inertia, values: vec![-0.8] },
+            Term { effect: wave, values: vec![4e-3, 5e-3, 2.41, 0.0] },
+        ];
+        let spent = Arc::new(Spent::default());
+        let survey = Survey::new(vec![long_decay(&truth, &terms)], &spent);
+        let noise = [ChannelNoise { sd: [NOISE_RAD, 1.0], correlation: [0.0; 2] }];
+        let mut settled = settle(&survey, survey.first_fit(), &noise);
+        for (effect, start) in [(inertia, vec![0.0]), (wave, vec![0.0, 0.0, 2.44, 0.01])] {
+            let (centres, slots) = (vec![start.clone()], vec![start]);
+            let mut fit = settled.fit;
+            fit.extensions.push(Extension { effect, slots, centres, slot_of: vec![Some(0)] });
+            settled = settle(&survey, fit, &noise);
+        }
+        assert!(settled.promised < SMALL_GAIN, "{} is still promised", settled.promised);
+        let misfit = settled.solution.misfit_here / N_SAMPLES as f64;
+        assert!((0.9..1.1).contains(&misfit), "{misfit} of the noise");
+        let [inertia, wave] = &settled.fit.extensions[..] else { panic!("two effects") };
+        assert!((inertia.slots[0][0] + 0.8).abs() < 2e-3, "{:?}", inertia.slots);
+        assert!((wave.slots[0][2] - 2.41).abs() < 1e-3, "{:?}", wave.slots);
+    }
+
+    #[test]
+    fn the_growth_with_speed_is_not_held_by_a_first_run_that_identified_nothing() {
+        let decay = |froude: f64, identified_per_s: f64| {
+            let b1_per_s = 0.02 + 0.2 * froude * froude;
+            let base = Base { natural_rad_s: 2.45, b1_per_s, b3_s: 0.1, log_scale: 0.0 };
+            let mut run = long_decay(&RunState { own: vec![0.3, 0.0, 0.0], base }, &[]);
+            (run.at.froude, run.at.b1_per_s) = (froude, identified_per_s);
+            run
+        };
+        let runs = vec![decay(0.0, 2e-4), decay(0.2, 0.028), decay(0.4, 0.052)];
+        let survey = Survey::new(runs, &Arc::new(Spent::default()));
+        let noise = [ChannelNoise { sd: [NOISE_RAD, 1.0], correlation: [0.0; 2] }; 3];
+        let settled = settle(&survey, survey.first_fit(), &noise);
+        let growth = settled.fit.laws[0].numbers[2];
+        assert!((growth - 0.2).abs() < 0.01, "{growth} 1/s");
+    }
+}

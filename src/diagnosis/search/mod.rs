@@ -1,0 +1,14 @@
+//! The search for causes.
+//!
+//! `score` weighs every effect in one pass, `trial` fits the best in full, `entry` judges whether
+//! the first of them enters, `growth` lets one after the other in, and `backward` looks back.
+
+pub(super) mod alike;
+mod backward;
+pub(super) mod entered;
+pub(super) mod entry;
+pub(super) mod growth;
+mod onset;
+mod reseated;
+pub(super) mod score;
+pub(super) mod trial;

@@ -1,0 +1,157 @@
+//! A candidate beside the model, fitted in full from where its score stands.
+
+use super::onset;
+use super::score::Scored;
+use crate::diagnosis::fit::cores;
+use crate::diagnosis::fit::layout::Layout;
+use crate::diagnosis::fit::run_fit::ChannelNoise;
+use crate::diagnosis::fit::settle::{Settled, settle, settle_further};
+use crate::diagnosis::fit::survey::{Extension, Fit, Survey};
+use crate::model::{Acts, Scope, effects};
+
+/// A candidate fitted in full.
+pub(in crate::diagnosis) struct Tried {
+    pub(in crate::diagnosis) settled: Settled,
+    pub(super) id: &'static str,
+}
+
+/// Share of the best one's evidence by which a candidate that has not settled may lie behind and
+/// still matter.
+const WITHIN_REACH: f64 = 0.2;
+
+/// Fits candidates in full, each on a core; those that take long only as far as they matter.
+pub(in crate::diagnosis) fn fit_all(
+    survey: &Survey,
+    current: &Settled,
+    scores: &[Scored],
+    noise: &[ChannelNoise],
+) -> Vec<Tried> {
+    let mut tried = cores::each(scores.len(), |k| {
+        let extension = scores[k].extension.clone();
+        let id = extension.effect.id;
+        let settled = settle(survey, with(survey, &current.fit, extension, noise), noise);
+        Tried { settled: onset::placed(survey, settled, noise), id }
+    });
+    let logs = tried.iter().map(|one| one.settled.log_evidence);
+    let best = logs.fold(f64::NEG_INFINITY, f64::max);
+    let reach = best - WITHIN_REACH * (best - current.log_evidence).max(0.0);
+    // One after the other: the runs of each are shared out among the cores.
+    for Tried { settled, .. } in &mut tried {
+        if settled.promised > 0.0 && settled.log_evidence + 0.5 * settled.promised > reach {
+            *settled = settle_further(survey, settled.fit.clone(), noise);
+        }
+    }
+    tried
+}
+
+/// The model with one more effect: with the strengths that the score gives it where they help as
+/// they are, else without any, from where all numbers move together.
+pub(super) fn with(
+    survey: &Survey,
+    fit: &Fit,
+    mut extension: Extension,
+    noise: &[ChannelNoise],
+) -> Fit {
+    let effect = extension.effect;
+    let n_strengths = effect.strengths.len();
+    for values in &mut extension.slots {
+        for (k, value) in values.iter_mut().enumerate() {
+            let [low, high] = effect.parameter(k).range;
+            *value = value.clamp(low, high);
+        }
+    }
+    let mut idle = fit.clone();
+    let mut at_rest = extension.clone();
+    at_rest.slots.iter_mut().for_each(|values| values[..n_strengths].fill(0.0));
+    idle.extensions.push(at_rest);
+    let mut acting = fit.clone();
+    for (run, slot) in extension.slot_of.iter().enumerate() {
+        let values = slot.map(|slot| &extension.slots[slot]);
+        let base = &fit.states[run].base;
+        let exchanged = values
+            .and_then(|values| effects::exchanged(effect, base, &survey.runs[run].at, values));
+        acting.states[run].base = exchanged.unwrap_or(*base);
+        // Without its ringing a force that is smaller than that says nothing of when it changes
+        // its sign; the other runs do.
+        if effect.is_ringing() && slot.is_some() {
+            acting.states[run] = survey.lawful(&fit.laws, fit.log_scale, run);
+        }
+    }
+    acting.extensions.push(extension);
+    let is_exchange = (0..survey.runs.len()).any(|r| acting.states[r].base != fit.states[r].base);
+    if is_exchange || survey.misfit(&acting, noise) < survey.misfit(&idle, noise) {
+        acting
+    } else {
+        idle
+    }
+}
+
+/// Share of its range within which a shape is held at an edge, and would rather be outside.
+const EDGE: f64 = 1e-3;
+
+/// Shares of damping and restoring within which the run of another label would be one of its own:
+/// hulls and speeds that differ by no more are not mistaken for each other. By judgement.
+const ONE_LABEL: [f64; 2] = [0.05, 0.02];
+
+/// Whether the newest effect lies inside its physical range.
+pub(super) fn is_newest_plausible(survey: &Survey, settled: &Settled) -> bool {
+    settled.fit.extensions.len().checked_sub(1).is_none_or(|e| is_plausible(survey, settled, e))
+}
+
+/// Whether an effect lies inside its physical range: its strengths as far as their deviations
+/// allow, the shapes of a memory off the edges at which they are held, the frequencies of a wave
+/// among those of the tank, a run of another label far enough from its own. Other shapes may lie
+/// at an edge: friction is as sharp as can be.
+pub(super) fn is_plausible(survey: &Survey, settled: &Settled, e: usize) -> bool {
+    let extension = &settled.fit.extensions[e];
+    let layout = Layout::new(survey, &settled.fit);
+    let n_strengths = extension.effect.strengths.len();
+    let is_label = |values: &Vec<f64>| values.iter().zip(ONE_LABEL).any(|(v, of)| v.abs() > of);
+    let is_of_few = extension.effect.scope == Scope::OddRun;
+    if is_of_few && !extension.slots.iter().all(is_label) {
+        return false;
+    }
+    if log_odds(survey, settled, e, &layout) < 0.0 {
+        return false;
+    }
+    extension.slots.iter().enumerate().all(|(s, values)| {
+        let remembers = matches!(extension.effect.acts, Acts::Lagging(_));
+        let is_held = remembers
+            && values[n_strengths..].iter().enumerate().any(|(k, value)| {
+                let [low, high] = extension.effect.shapes[k].range;
+                let edge = EDGE * (high - low);
+                *value < low + edge || *value > high - edge
+            });
+        let is_strong = (0..n_strengths).all(|k| {
+            let [low, high] = extension.effect.strengths[k].range;
+            let column = layout.parameter(&settled.fit, e, s, k);
+            let sd = settled.solution.covariance[column][column].max(0.0).sqrt();
+            values[k] > low - 2.0 * sd && values[k] < high + 2.0 * sd
+        });
+        is_strong && !is_held
+    })
+}
+
+/// Share of a parameter's prior deviation that runs which say something of it leave at most; by
+/// judgement, on a lost keel that a wave known no better than before made a wave.
+const MOSTLY_KNOWN: f64 = 0.9;
+
+/// Logarithm of the odds, over all runs, that the parameters of an effect are those of its cause.
+fn log_odds(survey: &Survey, settled: &Settled, e: usize, layout: &Layout) -> f64 {
+    let Extension { effect, slots, slot_of, .. } = &settled.fit.extensions[e];
+    let of_slot = |run: usize, s: usize| -> f64 {
+        let each = (0..effect.n_parameters()).map(|k| (k, effect.parameter(k)));
+        each.filter_map(|(k, parameter)| {
+            let column = layout.parameter(&settled.fit, e, s, k);
+            let sd = settled.solution.covariance[column][column].max(0.0).sqrt();
+            // What is known no better than before speaks neither for nor against.
+            let is_known = sd < MOSTLY_KNOWN * parameter.typical;
+            let odds = parameter.odds.filter(|_| is_known)?;
+            Some(odds(&survey.runs[run].at, slots[s][k], sd))
+        })
+        .sum()
+    };
+    // A set that many runs share is asked about once, in the first of them.
+    let first_of = |s: usize| slot_of.iter().position(|slot| *slot == Some(s));
+    (0..slots.len()).filter_map(|s| Some(of_slot(first_of(s)?, s))).sum()
+}
