@@ -220,17 +220,16 @@ fn the_files_of_the_diagnosis_stand_on_one_another_and_never_in_a_circle() {
         }
         standing.push((path.clone(), named));
     }
-    // What stands on nothing that is left is taken away, until only circles are left.
+    // What names nothing that is left, or is named by nothing, is taken away: circles stay.
     loop {
         let left: BTreeSet<String> = standing.iter().map(|(path, _)| path.clone()).collect();
-        let n = standing.len();
-        standing.retain(|(_, named)| named.iter().any(|other| left.contains(other)));
-        if standing.len() == n {
+        let named: BTreeSet<String> = standing.iter().flat_map(|(_, all)| all.clone()).collect();
+        standing.retain(|(path, all)| named.contains(path) && !all.is_disjoint(&left));
+        if standing.len() == left.len() {
             break;
         }
     }
-    let circle = |(path, _): &(String, _)| format!("{path} stands in a circle or on one");
-    mistakes.extend(standing.iter().map(circle));
+    mistakes.extend(standing.iter().map(|(path, _)| format!("{path} stands in a circle")));
     report(&mistakes);
 }
 
