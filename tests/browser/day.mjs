@@ -158,6 +158,13 @@ async function until(what, isSo) {
   assert.fail(`never ${what}`);
 }
 
+// Whatever the page would do after ten seconds or more, it does at once.
+function hurry() {
+  const real = window.setTimeout;
+  window.setTimeout = (then, ms, ...rest) => real(then, ms < 10_000 ? ms : 0, ...rest);
+  window.slowDown = () => { window.setTimeout = real; };
+}
+
 async function rejectAndUndo(page, second) {
   await show(page, "runs");
   const id = await page.locator("#runs-table tbody tr td.name").last().textContent();
@@ -166,8 +173,12 @@ async function rejectAndUndo(page, second) {
   await page.fill("#act-by", "C. Costa");
   await page.click("#act-yes");
   assert(await page.isVisible("#act"), "a rejection needs a reason");
+  await page.evaluate(hurry);
   await confirm(page, "a hand touched the model");
   await page.waitForSelector(`button[data-act=accept][data-run="${id}"]`, PATIENCE);
+  await page.waitForTimeout(300);
+  assert(await page.isVisible("#told button[data-act=undo]"), "the offer to undo did not wait");
+  await page.evaluate(() => window.slowDown());
   await until("rejected in the file", async () => (await identified(page)).byHand.length === 1);
   const { runs, byHand } = await identified(page);
   assert(!runs.includes(id));

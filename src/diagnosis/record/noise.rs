@@ -7,7 +7,7 @@ pub(super) fn rough_noise(values: &[f64]) -> f64 {
     (square / 70.0 / values.len().saturating_sub(4).max(1) as f64).sqrt()
 }
 
-/// Fourth differences: what a smooth course leaves nothing in.
+/// Fourth differences, in which nothing is left of a smooth course.
 pub(super) fn fourth_differences(v: &[f64]) -> Vec<f64> {
     v.windows(5).map(|v| v[0] - 4.0 * v[1] + 6.0 * v[2] - 4.0 * v[3] + v[4]).collect()
 }
