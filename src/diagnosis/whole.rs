@@ -9,11 +9,11 @@ use super::fit::survey::{Fit, Survey};
 use super::record::observation::Observation;
 use super::record::reversed::Reversed;
 use super::search::alike::{SAME, is_approximate};
-use super::search::entered::Entered;
 use super::search::entry::CRUMB_OF_EVIDENCE;
 use super::search::growth::{Grown, Stem, grow};
 use super::shaking;
-use super::told::verdict::{Diagnosis, Verdict, told};
+use super::told::diagnosis::{Diagnosis, told};
+use super::told::verdict::{Judged, Verdict, judged};
 use crate::campaign::Tank;
 use crate::run::RunKind;
 
@@ -41,7 +41,10 @@ pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
     if runs.is_empty() {
         return None;
     }
-    let tell = &|survey: &Survey, grown: &Grown| told(survey, grown, &reversed, tank);
+    let judge = &|survey: &Survey, grown: Grown| {
+        let judged = judged(survey, &grown, &reversed);
+        Explained { grown, judged }
+    };
     let spent = Arc::new(Spent::default());
     let of_one_kind = Parts::of(&runs, &spent);
     let mut survey = Survey::new(runs, &spent);
@@ -50,99 +53,90 @@ pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
         survey = Survey::new(calm, &spent);
         grown = grow(&survey, None);
     }
-    let mut together = tell(&survey, &grown);
-    if left(&together) > 0.0 {
-        for stem in of_one_kind.stems(&survey) {
-            let other = grow(&survey, Some(stem));
-            let diagnosis = tell(&survey, &other);
-            if left(&diagnosis) < LESS * left(&together) {
-                (grown, together) = (other, diagnosis);
-                break;
-            }
+    let mut together = judge(&survey, grown);
+    if together.judged.left() > 0.0 {
+        let others = of_one_kind.stems(&survey).map(|stem| judge(&survey, grow(&survey, Some(stem))));
+        let mut better = others.filter(|other| other.leaves_less_than(&together));
+        if let Some(other) = better.next() {
+            drop(better);
+            together = other;
         }
     }
-    let explained =
-        if whole.is_empty() { None } else { explained(whole, &survey, &grown, &of_one_kind, tell) };
-    // What names more of what the runs alone show is better than what explains what came after,
-    // unless that does as well for the runs.
-    let names_enough = |whole: &Whole| {
-        together.verdict == Verdict::Unexplained
-            || whole.diagnosis.causes.len() >= together.causes.len()
-            || whole.does_as_well(&survey, &grown)
-    };
-    Some(explained.filter(names_enough).map_or(together, |whole| whole.diagnosis))
-}
-
-/// What explains the runs with what the model did after its decays.
-struct Whole {
-    diagnosis: Diagnosis,
-    entered: Vec<Entered>,
-    /// Its model as it stands in the runs alone.
-    of_runs: Option<Fit>,
-}
-
-impl Whole {
-    /// Whether it is as probable under the runs alone as what grew on them, but for what may be a
-    /// want of an approximate form.
-    fn does_as_well(&self, survey: &Survey, grown: &Grown) -> bool {
-        let Some(of_runs) = &self.of_runs else { return false };
-        let log = |fit: &Fit| settle(survey, fit.clone(), &grown.noise).log_evidence;
-        let behind = log(&grown.last.fit) - log(of_runs);
-        let forms = self.entered.iter().filter(|one| is_approximate(one.id));
-        let want = forms.map(|one| CRUMB_OF_EVIDENCE * one.log_bayes_factor).fold(SAME, f64::max);
-        tracing::debug!(behind, want, "what explains what came after, under the runs alone");
-        behind < want
+    if !whole.is_empty() {
+        let short = whole.iter().map(|run| run.clone().first_periods(FIRST_PERIODS));
+        let short = Survey::new(short.collect(), &spent);
+        let whole = Survey::new(whole, &spent);
+        let explained = explained(&whole, &short, &survey, &together.grown, &of_one_kind, judge);
+        // What names more of what the runs alone show is better than what explains what came
+        // after, unless that does as well for the runs.
+        let names_enough = |of_whole: &Explained| {
+            together.judged.verdict == Verdict::Unexplained
+                || of_whole.judged.causes.len() >= together.judged.causes.len()
+                || does_as_well(&of_whole.grown, &whole, &together.grown, &survey)
+        };
+        if let Some(of_whole) = explained.filter(names_enough) {
+            return Some(told(&whole, of_whole.grown, of_whole.judged, tank));
+        }
     }
+    Some(told(&survey, together.grown, together.judged, tank))
 }
 
-/// Share of what one diagnosis leaves that a better one may; by judgement.
+/// A model that has grown, as it is judged.
+struct Explained {
+    grown: Grown,
+    judged: Judged,
+}
+
+/// Share of what one model leaves that a better one may; by judgement.
 const LESS: f64 = 0.5;
 
-/// What a diagnosis leaves for sure, as a share of the motion; nothing counts as explained by one
-/// that says that it does not explain the runs.
-fn left(diagnosis: &Diagnosis) -> f64 {
-    if diagnosis.verdict == Verdict::Unexplained {
-        return f64::INFINITY;
+impl Explained {
+    fn leaves_less_than(&self, other: &Self) -> bool {
+        self.judged.left() < LESS * other.judged.left()
     }
-    let sure = diagnosis.left_after.iter().filter(|left| left.is_sure());
-    sure.map(|left| left.share).sum()
 }
 
-/// The diagnosis with what the model did after its decays, where that explains it: from what the
-/// decays alone say, which may lead astray, from the first periods, from runs of one kind, or from
-/// nothing.
+/// Whether a model of the whole records is as probable under the runs alone as what grew on them,
+/// but for what may be a want of an approximate form.
+fn does_as_well(of_whole: &Grown, whole: &Survey, grown: &Grown, survey: &Survey) -> bool {
+    let Some(of_runs) = survey.adopted(whole, &of_whole.last.fit) else { return false };
+    let log = |fit: Fit| settle(survey, fit, &grown.noise).log_evidence;
+    let behind = log(grown.last.fit.clone()) - log(of_runs);
+    let forms = of_whole.entered.iter().filter(|one| is_approximate(one.id));
+    let want = forms.map(|one| CRUMB_OF_EVIDENCE * one.log_bayes_factor).fold(SAME, f64::max);
+    tracing::debug!(behind, want, "what explains what came after, under the runs alone");
+    behind < want
+}
+
+/// What explains the runs with what the model did after its decays: from what the decays alone
+/// say, which may lead astray, from the first periods, from runs of one kind, or from nothing.
 fn explained(
-    whole: Vec<Observation>,
+    whole: &Survey,
+    short: &Survey,
     survey: &Survey,
     grown: &Grown,
     of_one_kind: &Parts,
-    tell: &dyn Fn(&Survey, &Grown) -> Diagnosis,
-) -> Option<Whole> {
-    let short = whole.iter().map(|run| run.clone().first_periods(FIRST_PERIODS));
-    let spent = survey.cost.spent();
-    let short = Survey::new(short.collect(), spent);
-    let whole = Survey::new(whole, spent);
-    let told_from = |stem| {
-        let grown = grow(&whole, stem);
-        let diagnosis = tell(&whole, &grown);
-        let of_runs = survey.adopted(&whole, &grown.last.fit);
-        let is_explained = diagnosis.verdict != Verdict::Unexplained;
-        is_explained.then_some(Whole { diagnosis, entered: grown.entered, of_runs })
+    judge: &dyn Fn(&Survey, Grown) -> Explained,
+) -> Option<Explained> {
+    let from = |stem| {
+        let explained = judge(whole, grow(whole, stem));
+        (explained.judged.verdict != Verdict::Unexplained).then_some(explained)
     };
-    let first = || stem(&whole, survey, grown).and_then(|stem| told_from(Some(stem)));
-    let of_short = || stem(&whole, &short, &grow(&short, None));
-    let second = || of_short().and_then(|stem| told_from(Some(stem)));
-    let third = || of_one_kind.stems(&whole).find_map(|stem| told_from(Some(stem)));
-    let fourth = || told_from(None);
+    let first = || stem(whole, survey, grown).and_then(|stem| from(Some(stem)));
+    let of_short = || stem(whole, short, &grow(short, None));
+    let second = || of_short().and_then(|stem| from(Some(stem)));
+    let third = || of_one_kind.stems(whole).find_map(|stem| from(Some(stem)));
+    let fourth = || from(None);
     // One that explains all is looked for no further; of others the one that leaves least counts.
-    let ways: [&dyn Fn() -> Option<Whole>; 4] = [&first, &second, &third, &fourth];
-    let mut best: Option<Whole> = None;
+    let ways: [&dyn Fn() -> Option<Explained>; 4] = [&first, &second, &third, &fourth];
+    let mut best: Option<Explained> = None;
     for way in ways {
-        if best.as_ref().is_some_and(|best| left(&best.diagnosis) <= 0.0 || whole.cost.is_spent()) {
+        let is_enough = |best: &Explained| best.judged.left() <= 0.0 || whole.cost.is_spent();
+        if best.as_ref().is_some_and(is_enough) {
             break;
         }
         let Some(other) = way() else { continue };
-        if best.as_ref().is_none_or(|best| left(&other.diagnosis) < LESS * left(&best.diagnosis)) {
+        if best.as_ref().is_none_or(|best| other.leaves_less_than(best)) {
             best = Some(other);
         }
     }

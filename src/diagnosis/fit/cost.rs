@@ -36,12 +36,7 @@ impl Cost {
         Self { spent: Arc::clone(&self.spent), until: AtomicU64::new(u64::MAX) }
     }
 
-    /// What the whole diagnosis has cost.
-    pub(in crate::diagnosis) fn spent(&self) -> &Arc<Spent> {
-        &self.spent
-    }
-
-    /// A search for causes begins.
+    /// A search for causes begins, or what comes after the last.
     pub(in crate::diagnosis) fn begin(&self) {
         let most = MOST_SPENT.min(self.n_spent() + MOST_OF_ONE);
         self.until.store(most, Ordering::Relaxed);

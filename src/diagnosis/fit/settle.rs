@@ -36,7 +36,7 @@ const LITTLE: f64 = 0.1;
 
 /// Settles a model from where it stands.
 pub(in crate::diagnosis) fn settle(survey: &Survey, start: Fit, noise: &[ChannelNoise]) -> Settled {
-    settle_in(MOST_STEPS, survey, start, noise)
+    Settling::new(survey, start, noise).after(MOST_STEPS)
 }
 
 /// Settles a model further that has not settled in the steps that any is given.
@@ -45,44 +45,89 @@ pub(in crate::diagnosis) fn settle_further(
     start: Fit,
     noise: &[ChannelNoise],
 ) -> Settled {
-    settle_in(MOST_STEPS_MORE, survey, start, noise)
+    Settling::new(survey, start, noise).after(MOST_STEPS_MORE)
 }
 
-fn settle_in(most_steps: usize, survey: &Survey, start: Fit, noise: &[ChannelNoise]) -> Settled {
-    let mut fit = start;
-    let mut summaries = survey.summaries(&fit, noise, &|_| Vec::new());
-    let (mut n_steps, mut share) = (0, 1.0);
-    let (mut n_followed, mut misfit_before) = (0, f64::INFINITY);
-    loop {
-        let (solution, log_evidence) = solve_best(survey, &fit, &summaries);
-        let promised = solution.misfit_here - solution.least_misfit;
-        let own: f64 = summaries.iter().map(|summary| summary.own_gain).sum();
-        let unfollowed = own + solution.unsettled(survey, &fit);
-        if promised + unfollowed < SMALL_GAIN {
-            return Settled { fit, solution, log_evidence, summaries, promised: 0.0 };
+/// A model on its way to its most probable numbers.
+#[derive(Clone)]
+pub(in crate::diagnosis) struct Settling<'a> {
+    survey: &'a Survey,
+    noise: &'a [ChannelNoise],
+    fit: Fit,
+    summaries: Vec<Summary>,
+    n_steps: usize,
+    /// Share of a step that went lower last.
+    share: f64,
+    n_followed: usize,
+    misfit_before: f64,
+}
+
+impl<'a> Settling<'a> {
+    pub(in crate::diagnosis) fn new(
+        survey: &'a Survey,
+        start: Fit,
+        noise: &'a [ChannelNoise],
+    ) -> Self {
+        let summaries = survey.summaries(&start, noise, &|_| Vec::new());
+        let (n_followed, misfit_before) = (0, f64::INFINITY);
+        Self {
+            survey,
+            noise,
+            fit: start,
+            summaries,
+            n_steps: 0,
+            share: 1.0,
+            n_followed,
+            misfit_before,
         }
-        // A long record bends the valley: the runs' own numbers follow what the campaign's did
-        // before it steps again, while that brings them lower.
-        let still_falls = misfit_before - solution.misfit_here > SMALL_GAIN;
-        if n_steps > 0 && unfollowed > UNFOLLOWED && n_followed < FOLLOWING && still_falls {
-            misfit_before = solution.misfit_here;
-            fit = followed(survey, &fit, &summaries, &solution.scatter);
-            summaries = survey.summaries(&fit, noise, &|_| Vec::new());
-            n_followed += 1;
-            continue;
+    }
+
+    /// The model where it has settled, or where it stands after so many steps from the first on.
+    pub(in crate::diagnosis) fn after(&mut self, most_steps: usize) -> Settled {
+        let (survey, noise) = (self.survey, self.noise);
+        loop {
+            let (solution, log_evidence) = solve_best(survey, &self.fit, &self.summaries);
+            let promised = solution.misfit_here - solution.least_misfit;
+            let own: f64 = self.summaries.iter().map(|summary| summary.own_gain).sum();
+            let unfollowed = own + solution.unsettled(survey, &self.fit);
+            if tracing::enabled!(tracing::Level::TRACE) {
+                let id = self.fit.extensions.last().map_or("-", |e| e.effect.id);
+                let spent = survey.cost.n_spent();
+                tracing::trace!(id, n = self.n_steps, f = self.n_followed, log = log_evidence - 0.5 * promised, promised, unfollowed, spent, "settling");
+            }
+            if promised + unfollowed < SMALL_GAIN {
+                return self.settled(solution, log_evidence, 0.0);
+            }
+            // A long record bends the valley: the runs' own numbers follow what the campaign's
+            // did before it steps again, while that brings them lower.
+            let still_falls = self.misfit_before - solution.misfit_here > SMALL_GAIN;
+            let may_follow = self.n_steps > 0 && self.n_followed < FOLLOWING;
+            if may_follow && unfollowed > UNFOLLOWED && still_falls {
+                self.misfit_before = solution.misfit_here;
+                self.fit = followed(survey, &self.fit, &self.summaries, &solution.scatter);
+                self.summaries = survey.summaries(&self.fit, noise, &|_| Vec::new());
+                self.n_followed += 1;
+                continue;
+            }
+            let better = if self.n_steps < most_steps {
+                let (fit, summaries) = (&self.fit, &self.summaries);
+                stepped(survey, fit, summaries, &solution, noise, &mut self.share)
+            } else {
+                None
+            };
+            let Some(better) = better else {
+                // What is promised to a fit that gets no further is no evidence for it.
+                return self.settled(solution, log_evidence - 0.5 * promised, promised);
+            };
+            (self.fit, self.summaries) = better;
+            self.n_steps += 1;
+            (self.n_followed, self.misfit_before) = (0, f64::INFINITY);
         }
-        let better = if n_steps < most_steps {
-            stepped(survey, &fit, &summaries, &solution, noise, &mut share)
-        } else {
-            None
-        };
-        let Some(better) = better else {
-            // What is promised to a fit that gets no further is no evidence for it.
-            let log_evidence = log_evidence - 0.5 * promised;
-            return Settled { fit, solution, log_evidence, summaries, promised };
-        };
-        (fit, summaries) = better;
-        (n_steps, n_followed, misfit_before) = (n_steps + 1, 0, f64::INFINITY);
+    }
+
+    fn settled(&self, solution: Solution, log_evidence: f64, promised: f64) -> Settled {
+        let (fit, summaries) = (self.fit.clone(), self.summaries.clone());
+        Settled { fit, solution, log_evidence, summaries, promised }
     }
 }
 

@@ -38,6 +38,13 @@ pub(in crate::diagnosis) struct Grown {
     pub(in crate::diagnosis) is_cut_short: bool,
 }
 
+impl Grown {
+    /// Whether nothing has grown on the base model.
+    pub(in crate::diagnosis) fn is_base(&self) -> bool {
+        self.last.fit.extensions.is_empty()
+    }
+}
+
 /// A model and the effects in it, from which another grows.
 pub(in crate::diagnosis) struct Stem {
     pub(in crate::diagnosis) fit: Fit,
@@ -92,7 +99,10 @@ pub(in crate::diagnosis) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
     let Growing { current, noise, mut entered } = grown;
     let Beside { ranking, mut implausible, is_unnamed } = beside;
     let base = settle(survey, base_fit, &noise);
-    let mut last = settle(survey, current.fit, &noise);
+    let settled = |fit: Fit| {
+        if fit.extensions.is_empty() { base.clone() } else { settle(survey, fit, &noise) }
+    };
+    let mut last = settled(current.fit);
     while let Some(wild) = (0..entered.len()).find(|e| !is_plausible(survey, &last, *e)) {
         // An effect may have left its range as the others came.
         let Entered { id, log_bayes_factor, .. } = entered.remove(wild);
@@ -100,9 +110,10 @@ pub(in crate::diagnosis) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
         implausible.push((id, log_bayes_factor));
         let mut fit = last.fit.clone();
         fit.extensions.remove(wild);
-        last = settle(survey, fit, &noise);
+        last = settled(fit);
     }
-    let (base, last) = (base.over_scatters(survey), last.over_scatters(survey));
+    let last = last.over_scatters(survey);
+    let base = base.over_scatters(survey);
     let is_cut_short = survey.cost.is_spent();
     Grown { base, last, noise, entered, ranking, implausible, is_unnamed, is_cut_short }
 }

@@ -2,6 +2,7 @@
 
 pub(super) mod bias;
 pub(super) mod change;
+pub(super) mod diagnosis;
 pub(super) mod gain;
 mod partial;
 pub(super) mod unexplained;

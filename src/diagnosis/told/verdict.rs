@@ -1,15 +1,10 @@
-//! What is told of a campaign: verdict, causes in order of entry, gain, bias, what is left.
+//! The verdict on a grown model: its causes, its suspects, and what it leaves.
 
-use super::bias::{Bias, bias};
-use super::gain::{Gain, gain};
 use super::partial::{is_part, n_parts};
-use super::unexplained::{Unexplained, unexplained};
-use crate::campaign::Tank;
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::fit::layout::Layout;
 use crate::diagnosis::fit::leftover::{Leftover, leftovers};
-use crate::diagnosis::fit::survey::{Law, Survey};
-use crate::diagnosis::next_run::most_telling::{NextRun, next_run};
+use crate::diagnosis::fit::survey::Survey;
 use crate::diagnosis::record::reversed::{self, Reversed};
 use crate::diagnosis::record::wavering;
 use crate::diagnosis::search::entry::ENTERS_BESIDE;
@@ -17,7 +12,6 @@ use crate::diagnosis::search::growth::Grown;
 use crate::diagnosis::shown::Shown;
 use crate::inverse::estimate::Estimate;
 use crate::model::effects;
-use crate::model::model_file::{ConditionModel, EffectModel, ModelFile};
 use crate::run::RunKind;
 
 /// The verdict.
@@ -33,57 +27,37 @@ pub enum Verdict {
     Unexplained,
 }
 
-/// What a campaign's runs say about the simulation model.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Diagnosis {
-    /// The verdict.
-    pub verdict: Verdict,
-    /// Causes in order of entry.
-    pub causes: Vec<Cause>,
+/// A grown model as it is judged.
+pub(in crate::diagnosis) struct Judged {
+    pub(in crate::diagnosis) verdict: Verdict,
+    /// In order of entry.
+    pub(in crate::diagnosis) causes: Vec<Cause>,
     /// Effects that explain a part of what they found, most of which remains unexplained.
-    pub suspects: Vec<&'static str>,
-    /// Effects that would explain something only with impossible numbers.
-    pub implausible: Vec<&'static str>,
-    /// Whether the search for causes ended at what it may cost.
-    pub cut_short: bool,
-    /// Every effect with the logarithm of its Bayes factor against the base model, best first.
-    pub ranking: Vec<(&'static str, f64)>,
-    /// Gain on runs held out; none with a single run.
-    pub gain: Option<Gain>,
-    /// One per condition.
-    pub bias: Vec<Bias>,
+    pub(super) suspects: Vec<&'static str>,
     /// What the base model leaves of every channel.
-    pub left_before: Vec<Leftover>,
-    /// What the extended model leaves.
-    pub left_after: Vec<Leftover>,
-    /// The moment that the base model leaves in every run.
-    pub unexplained_before: Vec<Unexplained>,
-    /// The moment that the extended model leaves.
-    pub unexplained_after: Vec<Unexplained>,
-    /// What to tow next.
-    pub next_run: Option<NextRun>,
-    /// The extended model.
-    pub model: ModelFile,
+    pub(super) left_before: Vec<Leftover>,
+    /// What the grown one leaves.
+    pub(super) left_after: Vec<Leftover>,
 }
 
-impl Diagnosis {
-    /// Lets go of what only its own page shows, instant by instant.
-    pub fn forget_moments(&mut self) {
-        (self.unexplained_before, self.unexplained_after) = (Vec::new(), Vec::new());
+impl Judged {
+    /// What the model leaves for sure, as a share of the motion; nothing counts as explained by
+    /// one that does not explain the runs.
+    pub(in crate::diagnosis) fn left(&self) -> f64 {
+        if self.verdict == Verdict::Unexplained {
+            return f64::INFINITY;
+        }
+        let sure = self.left_after.iter().filter(|left| left.is_sure());
+        sure.map(|left| left.share).sum()
     }
 }
 
-/// What a grown model says of the runs that it has grown on.
-pub(in crate::diagnosis) fn told(
+/// Judges a grown model by what it leaves of the runs that it has grown on.
+pub(in crate::diagnosis) fn judged(
     survey: &Survey,
     grown: &Grown,
     reversed: &[Reversed],
-    tank: &Tank,
-) -> Diagnosis {
-    tracing::debug!(spent = survey.cost.n_spent(), "told");
-    if grown.is_cut_short {
-        tracing::warn!("the search for causes was cut short; hint: diagnose fewer runs together");
-    }
+) -> Judged {
     let shown = Shown::of(survey, &grown.last.fit);
     let is_untold = |left: &Leftover| !shown.tells(survey, &left.run, left.frequency_rad_s);
     let left_before = leftovers(survey, &grown.base.fit);
@@ -125,30 +99,7 @@ pub(in crate::diagnosis) fn told(
     } else {
         Verdict::Named
     };
-    let next_run = next_run(survey, grown, tank);
-    let model = model(survey, grown, &causes);
-    let mut implausible: Vec<&'static str> = Vec::new();
-    for (id, _) in &grown.implausible {
-        if !implausible.contains(id) {
-            implausible.push(id);
-        }
-    }
-    Diagnosis {
-        verdict,
-        causes,
-        suspects,
-        implausible,
-        cut_short: grown.is_cut_short,
-        gain: gain(survey, grown),
-        bias: bias(survey, grown),
-        ranking: grown.ranking.clone(),
-        left_before,
-        left_after,
-        unexplained_before: unexplained(survey, &grown.base.fit),
-        unexplained_after: unexplained(survey, &grown.last.fit),
-        next_run,
-        model,
-    }
+    Judged { verdict, causes, suspects, left_before, left_after }
 }
 
 fn causes(survey: &Survey, grown: &Grown) -> Vec<Cause> {
@@ -177,27 +128,4 @@ fn causes(survey: &Survey, grown: &Grown) -> Vec<Cause> {
         }
     });
     told.collect()
-}
-
-/// The laws, and the effects that were named.
-fn model(survey: &Survey, grown: &Grown, causes: &[Cause]) -> ModelFile {
-    let named = |id: &str| causes.iter().any(|cause| cause.effect == id);
-    // Without named causes the laws are those of the base model.
-    let fit = if causes.is_empty() { &grown.base.fit } else { &grown.last.fit };
-    let law = |(name, law): (&String, &Law)| {
-        let [natural_frequency_rad_s, b0_per_s, bk, b3_s] = law.numbers;
-        let kappa = bk / b0_per_s;
-        ConditionModel { name: name.clone(), natural_frequency_rad_s, b0_per_s, kappa, b3_s }
-    };
-    let conditions = survey.conditions.iter().zip(&fit.laws).map(law).collect();
-    let effects = fit
-        .extensions
-        .iter()
-        .filter(|extension| named(extension.effect.id))
-        .map(|extension| EffectModel {
-            id: extension.effect.id.to_owned(),
-            sets: extension.slots.clone(),
-        })
-        .collect();
-    ModelFile { conditions, effects }
 }
