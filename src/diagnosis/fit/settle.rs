@@ -18,8 +18,6 @@ pub(in crate::diagnosis) struct Settled {
 
 /// Steps after which a model that still moves is taken where it is.
 const MOST_STEPS: usize = 12;
-/// The same of a model that may yet be the best.
-const MOST_STEPS_MORE: usize = 12;
 /// Steps that the runs' own numbers are given to follow a step of the campaign's.
 const FOLLOWING: usize = 3;
 /// What they may still gain by it when the campaign steps again.
@@ -36,16 +34,9 @@ const LITTLE: f64 = 0.1;
 
 /// Settles a model from where it stands.
 pub(in crate::diagnosis) fn settle(survey: &Survey, start: Fit, noise: &[ChannelNoise]) -> Settled {
-    Settling::new(survey, start, noise).after(MOST_STEPS)
-}
-
-/// Settles a model further that has not settled in the steps that any is given.
-pub(in crate::diagnosis) fn settle_further(
-    survey: &Survey,
-    start: Fit,
-    noise: &[ChannelNoise],
-) -> Settled {
-    Settling::new(survey, start, noise).after(MOST_STEPS_MORE)
+    let mut settling = Settling::new(survey, start, noise);
+    settling.step_on(MOST_STEPS);
+    settling.settled()
 }
 
 /// A model on its way to its most probable numbers.
@@ -55,11 +46,16 @@ pub(in crate::diagnosis) struct Settling<'a> {
     noise: &'a [ChannelNoise],
     fit: Fit,
     summaries: Vec<Summary>,
+    solution: Solution,
+    /// Of all scatters, what is promised counted with it.
+    log_evidence: f64,
     n_steps: usize,
-    /// Share of a step that went lower last.
-    share: f64,
     n_followed: usize,
     misfit_before: f64,
+    /// The share of a step that went lower last.
+    share: f64,
+    /// Whether no share of a step goes lower.
+    is_stuck: bool,
 }
 
 impl<'a> Settling<'a> {
@@ -69,114 +65,131 @@ impl<'a> Settling<'a> {
         noise: &'a [ChannelNoise],
     ) -> Self {
         let summaries = survey.summaries(&start, noise, &|_| Vec::new());
-        let (n_followed, misfit_before) = (0, f64::INFINITY);
+        let (solution, log_evidence) = solve_best(survey, &start, &summaries);
         Self {
             survey,
             noise,
             fit: start,
             summaries,
+            solution,
+            log_evidence,
             n_steps: 0,
+            n_followed: 0,
+            misfit_before: f64::INFINITY,
             share: 1.0,
-            n_followed,
-            misfit_before,
+            is_stuck: false,
         }
     }
 
-    /// The model where it has settled, or where it stands after so many steps from the first on.
-    pub(in crate::diagnosis) fn after(&mut self, most_steps: usize) -> Settled {
-        let (survey, noise) = (self.survey, self.noise);
-        loop {
-            let (solution, log_evidence) = solve_best(survey, &self.fit, &self.summaries);
-            let promised = solution.misfit_here - solution.least_misfit;
-            let own: f64 = self.summaries.iter().map(|summary| summary.own_gain).sum();
-            let unfollowed = own + solution.unsettled(survey, &self.fit);
-            if tracing::enabled!(tracing::Level::TRACE) {
-                let id = self.fit.extensions.last().map_or("-", |e| e.effect.id);
-                let spent = survey.cost.n_spent();
-                tracing::trace!(id, n = self.n_steps, f = self.n_followed, log = log_evidence - 0.5 * promised, promised, unfollowed, spent, "settling");
-            }
-            if promised + unfollowed < SMALL_GAIN {
-                return self.settled(solution, log_evidence, 0.0);
-            }
+    /// Steps until the model has settled, or has made so many steps from its start on.
+    pub(in crate::diagnosis) fn step_on(&mut self, most_steps: usize) {
+        while !self.is_done() {
             // A long record bends the valley: the runs' own numbers follow what the campaign's
             // did before it steps again, while that brings them lower.
-            let still_falls = self.misfit_before - solution.misfit_here > SMALL_GAIN;
+            let still_falls = self.misfit_before - self.solution.misfit_here > SMALL_GAIN;
             let may_follow = self.n_steps > 0 && self.n_followed < FOLLOWING;
-            if may_follow && unfollowed > UNFOLLOWED && still_falls {
-                self.misfit_before = solution.misfit_here;
-                self.fit = followed(survey, &self.fit, &self.summaries, &solution.scatter);
-                self.summaries = survey.summaries(&self.fit, noise, &|_| Vec::new());
+            if may_follow && self.unfollowed() > UNFOLLOWED && still_falls {
+                self.misfit_before = self.solution.misfit_here;
+                let fit = followed(self.survey, &self.fit, &self.summaries, &self.solution.scatter);
+                let summaries = self.survey.summaries(&fit, self.noise, &|_| Vec::new());
                 self.n_followed += 1;
+                self.stand(fit, summaries);
                 continue;
             }
-            let better = if self.n_steps < most_steps {
-                let (fit, summaries) = (&self.fit, &self.summaries);
-                stepped(survey, fit, summaries, &solution, noise, &mut self.share)
-            } else {
-                None
-            };
-            let Some(better) = better else {
-                // What is promised to a fit that gets no further is no evidence for it.
-                return self.settled(solution, log_evidence - 0.5 * promised, promised);
-            };
-            (self.fit, self.summaries) = better;
-            self.n_steps += 1;
-            (self.n_followed, self.misfit_before) = (0, f64::INFINITY);
+            if self.n_steps == most_steps {
+                break;
+            }
+            match self.stepped() {
+                Some((fit, summaries)) => {
+                    self.n_steps += 1;
+                    (self.n_followed, self.misfit_before) = (0, f64::INFINITY);
+                    self.stand(fit, summaries);
+                }
+                None => self.is_stuck = true,
+            }
         }
     }
 
-    fn settled(&self, solution: Solution, log_evidence: f64, promised: f64) -> Settled {
-        let (fit, summaries) = (self.fit.clone(), self.summaries.clone());
-        Settled { fit, solution, log_evidence, summaries, promised }
+    fn stand(&mut self, fit: Fit, summaries: Vec<Summary>) {
+        (self.solution, self.log_evidence) = solve_best(self.survey, &fit, &summaries);
+        (self.fit, self.summaries) = (fit, summaries);
     }
-}
 
-/// A fit that lies lower along the solution's step, summarised; none where there is none.
-///
-/// What is left of a long record turns with every phase that it has run up, so that a step along
-/// what changes at its start soon leaves the valley. Where the whole step does, the readings are
-/// followed to the second order, for ever smaller shares of it (geodesic acceleration: Transtrum
-/// and Sethna 2012, arXiv:1201.5885).
-fn stepped(
-    survey: &Survey,
-    fit: &Fit,
-    summaries: &[Summary],
-    solution: &Solution,
-    noise: &[ChannelNoise],
-    share: &mut f64,
-) -> Option<(Fit, Vec<Summary>)> {
-    let misfit = |summaries: &[Summary]| summaries.iter().map(|s| s.misfit).sum::<f64>();
-    let prior = |fit: &Fit| prior_misfit(survey, fit, &solution.scatter);
-    let here = misfit(summaries) + prior(fit);
-    let is_lower = |next: &Fit| survey.misfit(next, noise) + prior(next) < here;
-    let summarised = |fit: &Fit| survey.summaries(fit, noise, &|_| Vec::new());
-    let whole = moved(survey, fit, summaries, solution, 1.0);
-    if *share < 1.0 {
-        if is_lower(&whole) {
-            *share = 1.0;
+    /// What the misfit would lose to the whole step.
+    fn promised(&self) -> f64 {
+        self.solution.misfit_here - self.solution.least_misfit
+    }
+
+    /// What the runs' own numbers would gain alone.
+    fn unfollowed(&self) -> f64 {
+        let own: f64 = self.summaries.iter().map(|summary| summary.own_gain).sum();
+        own + self.solution.unsettled(self.survey, &self.fit)
+    }
+
+    fn is_settled(&self) -> bool {
+        self.promised() + self.unfollowed() < SMALL_GAIN
+    }
+
+    /// Whether it has settled, or gets no further.
+    pub(in crate::diagnosis) fn is_done(&self) -> bool {
+        self.is_stuck || self.is_settled()
+    }
+
+    /// The model where it stands.
+    pub(in crate::diagnosis) fn settled(&self) -> Settled {
+        let promised = if self.is_settled() { 0.0 } else { self.promised() };
+        Settled {
+            fit: self.fit.clone(),
+            solution: self.solution.clone(),
+            // What is promised to a fit that gets no further is no evidence for it.
+            log_evidence: self.log_evidence - 0.5 * promised,
+            summaries: self.summaries.clone(),
+            promised,
+        }
+    }
+
+    /// A fit that lies lower along the solution's step, summarised; none where there is none.
+    ///
+    /// What is left of a long record turns with every phase that it has run up, so that a step
+    /// along what changes at its start soon leaves the valley. Where the whole step does, the
+    /// readings are followed to the second order, for ever smaller shares of it (geodesic
+    /// acceleration: Transtrum and Sethna 2012, arXiv:1201.5885).
+    fn stepped(&mut self) -> Option<(Fit, Vec<Summary>)> {
+        let (survey, noise, fit) = (self.survey, self.noise, &self.fit);
+        let (summaries, solution) = (&self.summaries, &self.solution);
+        let misfit = |summaries: &[Summary]| summaries.iter().map(|s| s.misfit).sum::<f64>();
+        let prior = |fit: &Fit| prior_misfit(survey, fit, &solution.scatter);
+        let here = misfit(summaries) + prior(fit);
+        let is_lower = |next: &Fit| survey.misfit(next, noise) + prior(next) < here;
+        let summarised = |fit: &Fit| survey.summaries(fit, noise, &|_| Vec::new());
+        let whole = moved(survey, fit, summaries, solution, 1.0);
+        if self.share < 1.0 {
+            if is_lower(&whole) {
+                self.share = 1.0;
+                let there = summarised(&whole);
+                return Some((whole, there));
+            }
+        } else {
+            // It is nearly always lower, and its summaries are those of the next round.
             let there = summarised(&whole);
-            return Some((whole, there));
+            if misfit(&there) + prior(&whole) < here {
+                return Some((whole, there));
+            }
         }
-    } else {
-        // It is nearly always lower, and its summaries are those of the next round.
-        let there = summarised(&whole);
-        if misfit(&there) + prior(&whole) < here {
-            return Some((whole, there));
+        let bends = bends(survey, fit, summaries, solution);
+        self.share = (self.share / SMALLER).min(1.0);
+        while self.share >= LEAST_SHARE {
+            let along = survey.summaries_less(fit, noise, &bends, self.share);
+            let curved = solve(survey, fit, &along, solution.scatter);
+            let next = moved(survey, fit, &along, &curved, self.share);
+            if is_lower(&next) {
+                let there = summarised(&next);
+                return Some((next, there));
+            }
+            self.share *= SMALLER;
         }
+        None
     }
-    let bends = bends(survey, fit, summaries, solution);
-    *share = (*share / SMALLER).min(1.0);
-    while *share >= LEAST_SHARE {
-        let along = survey.summaries_less(fit, noise, &bends, *share);
-        let curved = solve(survey, fit, &along, solution.scatter);
-        let next = moved(survey, fit, &along, &curved, *share);
-        if is_lower(&next) {
-            let there = summarised(&next);
-            return Some((next, there));
-        }
-        *share *= SMALLER;
-    }
-    None
 }
 
 /// What the readings of every run bend away by along the whole of a solution's step.

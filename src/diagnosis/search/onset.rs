@@ -6,20 +6,28 @@ use std::f64::consts::TAU;
 use crate::diagnosis::fit::run_fit::{ChannelNoise, misfit};
 use crate::diagnosis::fit::settle::{Settled, settle};
 use crate::diagnosis::fit::survey::{Fit, Survey};
+use crate::model::Effect;
 
 /// Times that the instants are sought and all other numbers settle with them.
 const ROUNDS: usize = 2;
 /// Halvings of an eighth of a period, the distance to the nearest node: down to some 2 ms.
 const HALVINGS: i32 = 6;
 
+/// Whether the newest effect of a model acts at once from some instant on.
+pub(super) fn has_instants(fit: &Fit) -> bool {
+    let newest = fit.extensions.last().map(|newest| newest.effect);
+    newest.is_some_and(|effect| place_of_instant(effect).is_some())
+}
+
+fn place_of_instant(effect: &Effect) -> Option<usize> {
+    (0..effect.n_parameters()).find(|k| effect.parameter(*k).is_instant)
+}
+
 /// The model with the instants of its newest effect where they leave least of each run; as it was
 /// where that effect has none.
 pub(super) fn placed(survey: &Survey, settled: Settled, noise: &[ChannelNoise]) -> Settled {
     let Some(newest) = settled.fit.extensions.last() else { return settled };
-    let effect = newest.effect;
-    let Some(k) = (0..effect.n_parameters()).find(|k| effect.parameter(*k).is_instant) else {
-        return settled;
-    };
+    let Some(k) = place_of_instant(newest.effect) else { return settled };
     let mut best = settled;
     for _ in 0..ROUNDS {
         let instants = survey.each_run(&|r| sought_s(survey, &best.fit, r, k, &noise[r]));

@@ -1,11 +1,12 @@
 //! A candidate beside the model, fitted in full from where its score stands.
 
+use super::alike::SAME;
 use super::onset;
 use super::score::Scored;
 use crate::diagnosis::fit::cores;
 use crate::diagnosis::fit::layout::Layout;
 use crate::diagnosis::fit::run_fit::ChannelNoise;
-use crate::diagnosis::fit::settle::{Settled, settle, settle_further};
+use crate::diagnosis::fit::settle::{Settled, Settling, settle};
 use crate::diagnosis::fit::survey::{Extension, Fit, Survey};
 use crate::model::{Acts, Scope, effects};
 
@@ -15,33 +16,78 @@ pub(in crate::diagnosis) struct Tried {
     pub(super) id: &'static str,
 }
 
-/// Share of the best one's evidence by which a candidate that has not settled may lie behind and
-/// still matter.
-const WITHIN_REACH: f64 = 0.2;
+/// Steps of each candidate from one look at those that fall behind to the next.
+const STEPS: usize = 2;
+/// Steps after which a candidate that still moves is taken where it is.
+const MOST_STEPS: usize = 24;
+/// Share of what the best one gains by which another may lie behind and still matter: as much as
+/// one that is told as its equal.
+const WITHIN_REACH: f64 = 0.1;
+/// How much of what a step promises the misfit a candidate may yet gain in evidence; the half of
+/// it would be the whole step. By trial on simulated campaigns.
+const MAY_GAIN: f64 = 2.0;
 
-/// Fits candidates in full, each on a core; those that take long only as far as they matter.
+/// Fits candidates in full, each on a core, as far as they matter.
 pub(in crate::diagnosis) fn fit_all(
     survey: &Survey,
     current: &Settled,
     scores: &[Scored],
     noise: &[ChannelNoise],
 ) -> Vec<Tried> {
-    let mut tried = cores::each(scores.len(), |k| {
+    fit_again(survey, current, scores, &[], noise)
+}
+
+/// The same where some have been fitted under another noise, from where that leaves less.
+pub(super) fn fit_again(
+    survey: &Survey,
+    current: &Settled,
+    scores: &[Scored],
+    earlier: &[Tried],
+    noise: &[ChannelNoise],
+) -> Vec<Tried> {
+    let mut settling = cores::each(scores.len(), |k| {
         let extension = scores[k].extension.clone();
-        let id = extension.effect.id;
-        let settled = settle(survey, with(survey, &current.fit, extension, noise), noise);
-        Tried { settled: onset::placed(survey, settled, noise), id }
+        let known = earlier.iter().find(|one| one.id == extension.effect.id);
+        let mut start = with(survey, &current.fit, extension, noise);
+        if let Some(known) = known
+            && survey.misfit(&known.settled.fit, noise) < survey.misfit(&start, noise)
+        {
+            start = known.settled.fit.clone();
+        }
+        if onset::has_instants(&start) {
+            // Before these are placed it says little of how far it will come.
+            let settled = settle(survey, start, noise);
+            start = onset::placed(survey, settled, noise).fit;
+        }
+        let mut settling = Settling::new(survey, start, noise);
+        settling.step_on(STEPS);
+        settling
     });
-    let logs = tried.iter().map(|one| one.settled.log_evidence);
-    let best = logs.fold(f64::NEG_INFINITY, f64::max);
-    let reach = best - WITHIN_REACH * (best - current.log_evidence).max(0.0);
-    // One after the other: the runs of each are shared out among the cores.
-    for Tried { settled, .. } in &mut tried {
-        if settled.promised > 0.0 && settled.log_evidence + 0.5 * settled.promised > reach {
-            *settled = settle_further(survey, settled.fit.clone(), noise);
+    let mut tried: Vec<Settled> = settling.iter().map(Settling::settled).collect();
+    for most_steps in (2 * STEPS..=MOST_STEPS).step_by(STEPS) {
+        let plausible = tried.iter().filter(|one| is_newest_plausible(survey, one));
+        let best = plausible.map(|one| one.log_evidence).fold(f64::NEG_INFINITY, f64::max);
+        let reach = best - SAME.max(WITHIN_REACH * (best - current.log_evidence));
+        let goes_on = |k: &usize| {
+            let one = &tried[*k];
+            !settling[*k].is_done() && one.log_evidence + MAY_GAIN * one.promised > reach
+        };
+        let on: Vec<usize> = (0..tried.len()).filter(goes_on).collect();
+        if on.is_empty() {
+            break;
+        }
+        let further = cores::each(on.len(), |k| {
+            let mut further = settling[on[k]].clone();
+            further.step_on(most_steps);
+            further
+        });
+        for (k, further) in on.into_iter().zip(further) {
+            tried[k] = further.settled();
+            settling[k] = further;
         }
     }
-    tried
+    let ids = scores.iter().map(|one| one.extension.effect.id);
+    ids.zip(tried).map(|(id, settled)| Tried { settled, id }).collect()
 }
 
 /// The model with one more effect: with the strengths that the score gives it where they help as
