@@ -58,6 +58,9 @@ pub struct StatePosterior {
 /// Range of the logarithm of the intensity that is searched. Below it the moment is a polynomial
 /// over any record; above it the moment follows the noise of every sample.
 const LOG_INTENSITY_RANGE: (f64, f64) = (-10.0, 14.0);
+/// Where what is believed of the intensity ends: below it even the rate of a moment that is read
+/// directly is constant over the longest record, so that all nodes would weigh the same.
+const LEAST_LOG_INTENSITY: f64 = -16.0;
 
 /// How finely the intensity is integrated over.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -217,10 +220,11 @@ impl<F> MomentProblem<'_, F> {
         let side = |first: Node, sign: f64| {
             let mut nodes = vec![first];
             for i in 2..200_u32 {
-                if nodes[nodes.len() - 1].log_weight <= least {
+                let next = top.log_intensity + sign * step * f64::from(i);
+                if nodes[nodes.len() - 1].log_weight <= least || next < LEAST_LOG_INTENSITY {
                     break;
                 }
-                nodes.push(at(top.log_intensity + sign * step * f64::from(i)));
+                nodes.push(at(next));
             }
             nodes
         };
