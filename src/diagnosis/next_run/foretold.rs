@@ -12,7 +12,7 @@ use crate::diagnosis::search::alike::open_shapes;
 use crate::model::{N_BASE, Scope};
 
 /// Times that a rival is linearised anew on runs that it has not seen.
-const RELINEARISED: usize = 4;
+pub(super) const RELINEARISED: usize = 4;
 
 /// What a run that was not made is expected to say of a rival.
 pub(super) struct Foretold {
@@ -165,7 +165,7 @@ pub(super) fn foretold(
 
 /// What two runs together are expected to say of the rival that is hardest to part: one that each
 /// run has of its own starts from the shape that came nearest in each alone, for of couples of
-/// shapes there are too many to try.
+/// shapes there are too many to try. The rivals are linearised so many times.
 pub(super) fn foretold_together(
     survey: &Survey,
     favourite: (&str, &Known),
@@ -173,6 +173,7 @@ pub(super) fn foretold_together(
     plans: [(Plan, f64); 2],
     alone: [&[Foretold]; 2],
     to_come: [Option<(f64, f64)>; 2],
+    rounds: usize,
 ) -> f64 {
     let made = Made::new(survey, favourite, &plans, to_come);
     let of_rival = |(k, rival): (usize, &&Known)| {
@@ -180,7 +181,7 @@ pub(super) fn foretold_together(
         for (place, alone) in alone.iter().enumerate() {
             start = made.starts(&start, place).swap_remove(alone[k].nearest);
         }
-        made.said(rival, &answer(&made, rival, &start, RELINEARISED))
+        made.said(rival, &answer(&made, rival, &start, rounds))
     };
     rivals.iter().enumerate().map(of_rival).fold(f64::INFINITY, f64::min)
 }
