@@ -10,6 +10,8 @@ pub(super) mod cost;
 pub(super) mod elimination;
 pub(super) mod layout;
 pub(super) mod leftover;
+#[cfg(test)]
+pub(super) mod long_decay;
 mod over_scatters;
 pub(super) mod run_fit;
 pub(super) mod scatter;

@@ -3,7 +3,9 @@
 
 use std::sync::Arc;
 
-use super::foretold::{Foretold, RELINEARISED, foretold, foretold_together, grown_survey, with_run};
+use super::foretold::{
+    Foretold, RELINEARISED, foretold, foretold_together, grown_survey, with_run,
+};
 use super::known::Known;
 use super::plan::{Plan, PlannedRun, SAMPLE_S, plans};
 use crate::campaign::Tank;

@@ -79,8 +79,7 @@ pub(in crate::diagnosis) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
     let mut start = base.clone();
     if let Some(Stem { fit, mut entered, ranking }) = stem {
         let (current, noise) = with_its_noise(survey, fit.clone(), &white(survey.noise(&fit)));
-        let found = sure_share(&leftovers(survey, &base_fit));
-        entered.iter_mut().filter_map(|known| known.found.as_mut()).for_each(|of| *of = found);
+        weigh_anew(survey, &base_fit, &current, &mut entered, &noise);
         start = Growing { current, noise, entered };
         beside.ranking = ranking;
     }
@@ -116,6 +115,34 @@ pub(in crate::diagnosis) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
     let base = base.over_scatters(survey);
     let is_cut_short = survey.cost.is_spent();
     Grown { base, last, noise, entered, ranking, implausible, is_unnamed, is_cut_short }
+}
+
+/// Takes anew what a stem's causes explain, one after the other: what other records say of them may
+/// be of the first periods alone, and what is a crumb of them is judged by it.
+fn weigh_anew(
+    survey: &Survey,
+    base_fit: &Fit,
+    current: &Settled,
+    entered: &mut [Entered],
+    noise: &[ChannelNoise],
+) {
+    let found = sure_share(&leftovers(survey, base_fit));
+    let mut before = settle(survey, base_fit.clone(), noise);
+    for (e, one) in entered.iter_mut().enumerate() {
+        let mut fit = current.fit.clone();
+        fit.extensions.truncate(e + 1);
+        let after = settle(survey, fit, noise);
+        let log = after.log_evidence - before.log_evidence;
+        if log > one.log_bayes_factor {
+            let left = [&before, &after].map(|of| excess(&leftovers(survey, &of.fit)));
+            (one.log_bayes_factor, one.removed) = (log, left[0] - left[1]);
+        }
+        tracing::debug!(effect = one.id, log = one.log_bayes_factor, "known of other records");
+        if let Some(of) = &mut one.found {
+            *of = found;
+        }
+        before = after;
+    }
 }
 
 /// Lets effects enter one by one, all but those that are banned, until nothing more is to be named.

@@ -26,6 +26,46 @@ const WITHIN_REACH: f64 = 0.1;
 /// How much of what a step promises the misfit a candidate may yet gain in evidence; the half of
 /// it would be the whole step. By trial on simulated campaigns.
 const MAY_GAIN: f64 = 2.0;
+/// How often a candidate may yet gain what it has gained in its last looks: what promises much may
+/// keep nothing of it. By trial as well.
+const MAY_GAIN_AGAIN: f64 = 10.0;
+/// So many looks.
+const LOOKS: usize = 2;
+
+/// A candidate that is being fitted.
+struct Candidate<'a> {
+    settling: Settling<'a>,
+    settled: Settled,
+    /// The largest evidence so far at every look.
+    logs: Vec<f64>,
+}
+
+impl<'a> Candidate<'a> {
+    fn new(mut settling: Settling<'a>) -> Self {
+        settling.step_on(STEPS);
+        let settled = settling.settled();
+        Self { settling, logs: vec![settled.log_evidence], settled }
+    }
+
+    fn steps_on(&self, most_steps: usize) -> Self {
+        let mut settling = self.settling.clone();
+        settling.step_on(most_steps);
+        let settled = settling.settled();
+        let mut logs = self.logs.clone();
+        logs.push(settled.log_evidence.max(logs[logs.len() - 1]));
+        Self { settling, settled, logs }
+    }
+
+    /// Whether it has not settled and may come so far.
+    fn may_reach(&self, reach: f64) -> bool {
+        let wanted = reach - self.settled.log_evidence;
+        let [now, then] = [1, 1 + LOOKS].map(|back| self.logs.len().checked_sub(back));
+        let gained = now.zip(then).map(|(now, then)| self.logs[now] - self.logs[then]);
+        !self.settling.is_done()
+            && wanted < MAY_GAIN * self.settled.promised
+            && gained.is_none_or(|gained| wanted < MAY_GAIN_AGAIN * gained)
+    }
+}
 
 /// Fits candidates in full, each on a core, as far as they matter.
 pub(in crate::diagnosis) fn fit_all(
@@ -45,7 +85,7 @@ pub(super) fn fit_again(
     earlier: &[Tried],
     noise: &[ChannelNoise],
 ) -> Vec<Tried> {
-    let mut settling = cores::each(scores.len(), |k| {
+    let mut all = cores::each(scores.len(), |k| {
         let extension = scores[k].extension.clone();
         let known = earlier.iter().find(|one| one.id == extension.effect.id);
         let mut start = with(survey, &current.fit, extension, noise);
@@ -59,35 +99,24 @@ pub(super) fn fit_again(
             let settled = settle(survey, start, noise);
             start = onset::placed(survey, settled, noise).fit;
         }
-        let mut settling = Settling::new(survey, start, noise);
-        settling.step_on(STEPS);
-        settling
+        Candidate::new(Settling::new(survey, start, noise))
     });
-    let mut tried: Vec<Settled> = settling.iter().map(Settling::settled).collect();
     for most_steps in (2 * STEPS..=MOST_STEPS).step_by(STEPS) {
-        let plausible = tried.iter().filter(|one| is_newest_plausible(survey, one));
+        let settled = all.iter().map(|one| &one.settled);
+        let plausible = settled.filter(|one| is_newest_plausible(survey, one));
         let best = plausible.map(|one| one.log_evidence).fold(f64::NEG_INFINITY, f64::max);
         let reach = best - SAME.max(WITHIN_REACH * (best - current.log_evidence));
-        let goes_on = |k: &usize| {
-            let one = &tried[*k];
-            !settling[*k].is_done() && one.log_evidence + MAY_GAIN * one.promised > reach
-        };
-        let on: Vec<usize> = (0..tried.len()).filter(goes_on).collect();
+        let on: Vec<usize> = (0..all.len()).filter(|k| all[*k].may_reach(reach)).collect();
         if on.is_empty() {
             break;
         }
-        let further = cores::each(on.len(), |k| {
-            let mut further = settling[on[k]].clone();
-            further.step_on(most_steps);
-            further
-        });
+        let further = cores::each(on.len(), |k| all[on[k]].steps_on(most_steps));
         for (k, further) in on.into_iter().zip(further) {
-            tried[k] = further.settled();
-            settling[k] = further;
+            all[k] = further;
         }
     }
     let ids = scores.iter().map(|one| one.extension.effect.id);
-    ids.zip(tried).map(|(id, settled)| Tried { settled, id }).collect()
+    ids.zip(all).map(|(id, one)| Tried { settled: one.settled, id }).collect()
 }
 
 /// The model with one more effect: with the strengths that the score gives it where they help as
@@ -200,4 +229,47 @@ fn log_odds(survey: &Survey, settled: &Settled, e: usize, layout: &Layout) -> f6
     // A set that many runs share is asked about once, in the first of them.
     let first_of = |s: usize| slot_of.iter().position(|slot| *slot == Some(s));
     (0..slots.len()).filter_map(|s| Some(of_slot(first_of(s)?, s))).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::diagnosis::fit::cost::Spent;
+    use crate::diagnosis::fit::long_decay::{NOISE_RAD, long_decay};
+    use crate::diagnosis::fit::run_fit::RunState;
+    use crate::diagnosis::search::score::score;
+    use crate::model::{Base, Term};
+
+    #[test]
+    fn candidates_that_fall_behind_cost_little_and_the_best_is_what_it_is_alone() {
+        let base = Base { natural_rad_s: 2.46, b1_per_s: 0.02, b3_s: 0.1, log_scale: 0.0 };
+        let inertia = effects::effect("inertia.amplitude").expect("an effect of the table");
+        let truth = RunState { own: vec![0.3, 0.0, 0.0], base };
+        let terms = [Term { effect: inertia, values: vec![-0.8] }];
+        let of_campaign = || {
+            let spent = Arc::new(Spent::default());
+            Survey::new(vec![long_decay(&truth, &terms)], &spent)
+        };
+        let survey = of_campaign();
+        let noise = [ChannelNoise { sd: [NOISE_RAD, 1.0], correlation: [0.0; 2] }];
+        let current = settle(&survey, survey.first_fit(), &noise);
+        let scores: Vec<Scored> =
+            score(&survey, &current.fit, &noise).into_iter().take(8).collect();
+        let (alone, together) = (of_campaign(), of_campaign());
+        let each = scores.iter().map(|one| {
+            let start = with(&alone, &current.fit, one.extension.clone(), &noise);
+            let mut settling = Settling::new(&alone, start, &noise);
+            settling.step_on(MOST_STEPS);
+            settling.settled()
+        });
+        let most = |logs: &mut dyn Iterator<Item = f64>| logs.fold(f64::NEG_INFINITY, f64::max);
+        let best_alone = most(&mut each.map(|settled| settled.log_evidence));
+        let tried = fit_all(&together, &current, &scores, &noise);
+        let best = most(&mut tried.iter().map(|one| one.settled.log_evidence));
+        assert!((best - best_alone).abs() < 0.05, "{best} and {best_alone}");
+        let (of_all, of_each) = (together.cost.n_spent(), alone.cost.n_spent());
+        assert!(4 * of_all < 3 * of_each, "{of_all} together, {of_each} each alone");
+    }
 }

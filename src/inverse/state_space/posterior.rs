@@ -316,3 +316,28 @@ impl<F> MomentProblem<'_, F> {
         Node { log_intensity, log_weight, noise_variance: scale / (shape - 1.0) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inverse::state_space::drifting::Drifting;
+
+    #[test]
+    fn where_nothing_but_noise_is_read_few_nodes_tell_so() {
+        // Every rate of the moment's walk below some weighs the same: it is no walk over the record.
+        let tau: Vec<f64> = (0..1000).map(|k| 0.08 * f64::from(k)).collect();
+        let record: Vec<f64> = (0..1000).map(|k| (7.3 * f64::from(k * k)).sin()).collect();
+        let problem = MomentProblem {
+            tau: &tau,
+            record: &record,
+            free_components: &[0, 1],
+            prior: |intensity: f64| Drifting { intensity },
+            hyperprior: Hyperprior::ScaleFree { roll_scale_rad: 1.0 },
+            quadrature: Quadrature::BAND,
+        };
+        let told = problem.solve::<2, Drifting>();
+        assert!(told.nodes.len() < 20, "{} nodes", told.nodes.len());
+        let is_nought = |(mean, sd): (&[f64; 3], &[f64; 3])| mean[2].abs() < 3.0 * sd[2];
+        assert!(told.mean.iter().zip(&told.sd).all(is_nought));
+    }
+}
