@@ -1,6 +1,7 @@
 //! What to tow next: `plan` lists the runs that the tank allows, `foretold` says what each would
-//! bring, `most_telling` chooses.
+//! bring, `couples` what two would, `most_telling` chooses.
 
+mod couples;
 mod foretold;
 mod known;
 pub(super) mod most_telling;

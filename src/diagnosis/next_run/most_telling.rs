@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::couples::{best_couple, most};
 use super::foretold::{
     Foretold, RELINEARISED, foretold, foretold_together, grown_survey, with_run,
 };
@@ -86,12 +87,6 @@ fn noise_to_come(survey: &Survey, noise: &[ChannelNoise]) -> [Option<(f64, f64)>
 /// 12; `D - 1.28 * 2 sqrt(D) > 12` from `D = 25` on. Half as much again is for the numbers of the
 /// favourite, which are not known so well.
 const DECIDES: f64 = 20.0;
-/// Times that rivals are linearised to tell a couple of runs roughly.
-const ROUGHLY: usize = 2;
-/// Couples that are told in full before it is seen whether another may say more.
-const TOLD_AT_ONCE: usize = 8;
-/// How much more a later run must say than an earlier one to be asked for instead.
-const NEARLY: f64 = 1.05;
 /// What a second run must bring to be asked for.
 const WORTH_A_RUN: f64 = 2.0;
 /// The same where the shape of a rival is asked for: a fifth narrower.
@@ -170,20 +165,16 @@ fn parting(
         None => (DECIDES, WORTH_A_RUN),
     };
     if log < enough && !survey.cost.is_spent() {
-        let couples = couples(&plans, best);
-        let told = |k: usize, rounds| {
-            let [a, b] = couples[k];
+        let told = |[a, b]: [usize; 2], rounds: usize| {
             let (plans, alone) = ([plans[a], plans[b]], [&alone[a][..], &alone[b]]);
             foretold_together(survey, favoured, &known, plans, alone, noise, rounds)
         };
-        let roughly = cores::each(couples.len(), |k| told(k, ROUGHLY));
-        let logs = most_in_full(&roughly, |k| told(k, RELINEARISED));
-        tracing::debug!(spent = survey.cost.n_spent(), couples = logs.len(), "couples foretold");
-        if let Some((both, k)) = most(logs.into_iter())
+        if let Some((both, couple)) = best_couple(&plans, best, told)
             && both > log + worth
         {
-            (log, set) = (both, couples[k].map(|one| plans[one]).to_vec());
+            (log, set) = (both, couple.map(|one| plans[one]).to_vec());
         }
+        tracing::debug!(spent = survey.cost.n_spent(), "couples foretold");
         // Known only where couples were foretold too.
         if narrowing.is_none() && log < WORTH_A_RUN {
             return in_vain(survey, grown, tank, favourite, rivals);
@@ -273,47 +264,6 @@ fn among(
 /// What runs say of the rival that is hardest to part, which decides.
 fn hardest(told: &[Foretold]) -> f64 {
     told.iter().map(|told| told.log).fold(f64::INFINITY, f64::min)
-}
-
-/// The place of what says most: of those that say much the same, the first.
-fn most(logs: impl Iterator<Item = f64>) -> Option<(f64, usize)> {
-    let finite = logs.enumerate().filter(|(_, log)| log.is_finite());
-    finite.fold(None, |best, (k, log)| match best {
-        Some((most, _)) if log <= NEARLY * most => best,
-        _ => Some((log, k)),
-    })
-}
-
-/// What the couples say that are told in full, others nothing: told roughly a couple says too much,
-/// for its rivals have not come as near as they can, so that one which says less than another in
-/// full is not the best.
-fn most_in_full(roughly: &[f64], told: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
-    let mut order: Vec<usize> = (0..roughly.len()).filter(|k| roughly[*k].is_finite()).collect();
-    order.sort_by(|a, b| roughly[*b].total_cmp(&roughly[*a]));
-    let mut logs = vec![f64::NAN; roughly.len()];
-    let mut most = f64::NEG_INFINITY;
-    for some in order.chunks(TOLD_AT_ONCE) {
-        if NEARLY * roughly[some[0]] <= most {
-            break;
-        }
-        for (k, log) in some.iter().zip(cores::each(some.len(), |i| told(some[i]))) {
-            logs[*k] = log;
-            most = most.max(log);
-        }
-    }
-    logs
-}
-
-/// Places of two runs that may decide together: the rod at two speeds, or any run beside the best.
-fn couples(plans: &[(Plan, f64)], best: usize) -> Vec<[usize; 2]> {
-    let mut all: Vec<_> = (0..plans.len()).map(|other| [best, other]).collect();
-    for (k, (one, _)) in plans.iter().enumerate() {
-        let is_like = |(other, _): &(Plan, f64)| Plan { froude: one.froude, ..*other } == *one;
-        let others = k + 1..plans.len();
-        let at_other_speed = others.filter(|j| one.kind == RunKind::Forced && is_like(&plans[*j]));
-        all.extend(at_other_speed.map(|other| [k, other]));
-    }
-    all
 }
 
 /// The decay that narrows the law of damping most.

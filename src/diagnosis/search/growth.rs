@@ -6,8 +6,9 @@ use super::entered::{ENTERS, Entered};
 use super::entry::{Best, CRUMB_OF_EVIDENCE, best};
 use super::reseated::reseated;
 use super::score::{Scored, score_all_but};
+use super::stem::Stem;
 use super::trial::{Tried, fit_again, fit_all, is_newest_plausible, is_plausible};
-use crate::diagnosis::fit::leftover::{Leftover, excess, leftovers, sure_share};
+use crate::diagnosis::fit::leftover::{Leftover, excess, leftovers};
 use crate::diagnosis::fit::run_fit::ChannelNoise;
 use crate::diagnosis::fit::settle::{Settled, settle};
 use crate::diagnosis::fit::survey::{Fit, Survey};
@@ -45,13 +46,6 @@ impl Grown {
     }
 }
 
-/// A model and the effects in it, from which another grows.
-pub(in crate::diagnosis) struct Stem {
-    pub(in crate::diagnosis) fit: Fit,
-    pub(in crate::diagnosis) entered: Vec<Entered>,
-    pub(in crate::diagnosis) ranking: Vec<(&'static str, f64)>,
-}
-
 /// A model as far as it has grown.
 #[derive(Clone)]
 struct Growing {
@@ -77,11 +71,12 @@ pub(in crate::diagnosis) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
     let base = Growing { current, noise, entered: Vec::new() };
     let mut beside = Beside::default();
     let mut start = base.clone();
-    if let Some(Stem { fit, mut entered, ranking }) = stem {
-        let (current, noise) = with_its_noise(survey, fit.clone(), &white(survey.noise(&fit)));
-        weigh_anew(survey, &base_fit, &current, &mut entered, &noise);
+    if let Some(stem) = stem {
+        let white = white(survey.noise(&stem.fit));
+        let (current, noise) = with_its_noise(survey, stem.fit.clone(), &white);
+        let entered = stem.weighed_anew(survey, &base_fit, &current, &noise);
         start = Growing { current, noise, entered };
-        beside.ranking = ranking;
+        beside.ranking = stem.ranking;
     }
     let mut grown = climb(survey, start, &[], &mut beside);
     if let Some((other, found)) = in_another_reading(survey, &base, &grown) {
@@ -115,34 +110,6 @@ pub(in crate::diagnosis) fn grow(survey: &Survey, stem: Option<Stem>) -> Grown {
     let base = base.over_scatters(survey);
     let is_cut_short = survey.cost.is_spent();
     Grown { base, last, noise, entered, ranking, implausible, is_unnamed, is_cut_short }
-}
-
-/// Takes anew what a stem's causes explain, one after the other: what other records say of them may
-/// be of the first periods alone, and what is a crumb of them is judged by it.
-fn weigh_anew(
-    survey: &Survey,
-    base_fit: &Fit,
-    current: &Settled,
-    entered: &mut [Entered],
-    noise: &[ChannelNoise],
-) {
-    let found = sure_share(&leftovers(survey, base_fit));
-    let mut before = settle(survey, base_fit.clone(), noise);
-    for (e, one) in entered.iter_mut().enumerate() {
-        let mut fit = current.fit.clone();
-        fit.extensions.truncate(e + 1);
-        let after = settle(survey, fit, noise);
-        let log = after.log_evidence - before.log_evidence;
-        if log > one.log_bayes_factor {
-            let left = [&before, &after].map(|of| excess(&leftovers(survey, &of.fit)));
-            (one.log_bayes_factor, one.removed) = (log, left[0] - left[1]);
-        }
-        tracing::debug!(effect = one.id, log = one.log_bayes_factor, "known of other records");
-        if let Some(of) = &mut one.found {
-            *of = found;
-        }
-        before = after;
-    }
 }
 
 /// Lets effects enter one by one, all but those that are banned, until nothing more is to be named.

@@ -11,4 +11,5 @@ pub(super) mod growth;
 mod onset;
 mod reseated;
 pub(super) mod score;
+pub(super) mod stem;
 pub(super) mod trial;
