@@ -99,13 +99,15 @@ impl Explained {
 }
 
 /// Whether a model of the whole records is as probable under the runs alone as what grew on them,
-/// but for what may be a want of an approximate form.
+/// but for what may be a want of an approximate form: little beside what it explains of the runs.
 fn does_as_well(of_whole: &Grown, whole: &Survey, grown: &Grown, survey: &Survey) -> bool {
     let Some(of_runs) = survey.adopted(whole, &of_whole.last.fit) else { return false };
     let log = |fit: Fit| settle(survey, fit, &grown.noise).log_evidence;
-    let behind = log(grown.last.fit.clone()) - log(of_runs);
-    let forms = of_whole.entered.iter().filter(|one| is_approximate(one.id));
-    let want = forms.map(|one| CRUMB_OF_EVIDENCE * one.log_bayes_factor).fold(SAME, f64::max);
+    let (log_of_whole, log_of_runs) = (log(of_runs), log(grown.last.fit.clone()));
+    let has_forms = of_whole.entered.iter().any(|one| is_approximate(one.id));
+    let explained = log_of_whole - grown.base.log_evidence;
+    let want = if has_forms { SAME.max(CRUMB_OF_EVIDENCE * explained) } else { SAME };
+    let behind = log_of_runs - log_of_whole;
     tracing::debug!(behind, want, "what explains what came after, under the runs alone");
     behind < want
 }
