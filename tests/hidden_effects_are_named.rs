@@ -163,6 +163,14 @@ fn a_keel_that_is_lost_is_no_wave_because_the_tank_has_none_of_that_frequency() 
 }
 
 #[test]
+fn water_in_the_hull_is_named_where_a_fit_under_white_noise_strays_from_its_numbers() {
+    for (set, size, seed) in [(RunSet::Speeds, 2.0, 884), (RunSet::Rest, 1.0, 887)] {
+        let (_, verdict) = diagnosed(set, &["restoring.free_surface"], size, seed);
+        assert_eq!(named(&verdict), ["restoring.free_surface"]);
+    }
+}
+
+#[test]
 fn water_in_the_hull_is_named_by_what_the_model_does_after_its_decays() {
     // Its beat cuts these decays short, and they alone stay unexplained.
     let (campaign, verdict) = diagnosed(RunSet::Rest, &["restoring.free_surface"], 1.0, 710);

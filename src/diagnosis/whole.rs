@@ -74,7 +74,7 @@ pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
         let names_enough = |of_whole: &Explained| {
             together.judged.verdict == Verdict::Unexplained
                 || of_whole.judged.causes.len() >= together.judged.causes.len()
-                || does_as_well(&of_whole.grown, &whole, &together.grown, &survey)
+                || does_as_well(of_whole, &whole, &together, &survey)
         };
         if let Some(of_whole) = explained.filter(names_enough) {
             return Some(told(&whole, of_whole.grown, of_whole.judged, tank));
@@ -99,15 +99,26 @@ impl Explained {
 }
 
 /// Whether a model of the whole records is as probable under the runs alone as what grew on them,
-/// but for what may be a want of an approximate form: little beside what it explains of the runs.
-fn does_as_well(of_whole: &Grown, whole: &Survey, grown: &Grown, survey: &Survey) -> bool {
-    let Some(of_runs) = survey.adopted(whole, &of_whole.last.fit) else { return false };
+/// but for what may be a want of an approximate form: little beside what that explains of all that
+/// is recorded or, where what grew on the runs holds it with more, beside what it explains there.
+fn does_as_well(
+    of_whole: &Explained,
+    whole: &Survey,
+    together: &Explained,
+    survey: &Survey,
+) -> bool {
+    let grown = &together.grown;
+    let Some(of_runs) = survey.adopted(whole, &of_whole.grown.last.fit) else { return false };
     let log = |fit: Fit| settle(survey, fit, &grown.noise).log_evidence;
     let (log_of_whole, log_of_runs) = (log(of_runs), log(grown.last.fit.clone()));
-    let has_forms = of_whole.entered.iter().any(|one| is_approximate(one.id));
-    let explained = log_of_whole - grown.base.log_evidence;
-    let want = if has_forms { SAME.max(CRUMB_OF_EVIDENCE * explained) } else { SAME };
+    let forms = || of_whole.grown.entered.iter().filter(|one| is_approximate(one.id));
+    let of_forms = if of_whole.judged.is_part_of(&together.judged) {
+        forms().next().map_or(0.0, |_| log_of_whole - grown.base.log_evidence)
+    } else {
+        forms().map(|one| one.log_bayes_factor).fold(0.0, f64::max)
+    };
     let behind = log_of_runs - log_of_whole;
+    let want = SAME.max(CRUMB_OF_EVIDENCE * of_forms);
     tracing::debug!(behind, want, "what explains what came after, under the runs alone");
     behind < want
 }

@@ -135,6 +135,12 @@ impl<'a> Settling<'a> {
         self.is_stuck || self.is_settled()
     }
 
+    /// Tries the whole step again: what bends near one place may be straight at the next.
+    pub(in crate::diagnosis) fn begin_anew(&mut self) {
+        (self.share, self.is_stuck) = (1.0, false);
+        (self.n_followed, self.misfit_before) = (0, f64::INFINITY);
+    }
+
     /// The model where it stands.
     pub(in crate::diagnosis) fn settled(&self) -> Settled {
         let promised = if self.is_settled() { 0.0 } else { self.promised() };

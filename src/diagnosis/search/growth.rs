@@ -7,7 +7,7 @@ use super::entry::{Best, CRUMB_OF_EVIDENCE, best};
 use super::reseated::reseated;
 use super::score::{Scored, score_all_but};
 use super::stem::Stem;
-use super::trial::{Tried, fit_again, fit_all, is_newest_plausible, is_plausible};
+use super::trial::{Tried, fit_all, is_newest_plausible, is_plausible};
 use crate::diagnosis::fit::leftover::{Leftover, excess, leftovers};
 use crate::diagnosis::fit::run_fit::ChannelNoise;
 use crate::diagnosis::fit::settle::{Settled, settle};
@@ -278,7 +278,7 @@ fn step(
             chosen.push(again.clone());
         }
     }
-    let mut tried = fit_again(survey, &current, &chosen, &first, &noise);
+    let mut tried = fit_all(survey, &current, &chosen, &noise);
     sort(&mut tried);
     for one in &tried {
         if let Some(place) = ranking.iter_mut().find(|(id, _)| *id == one.id) {

@@ -20,6 +20,8 @@ pub(in crate::diagnosis) struct Tried {
 const STEPS: usize = 2;
 /// Steps after which a candidate that still moves is taken where it is.
 const MOST_STEPS: usize = 24;
+/// Steps after which those that still matter try whole steps again.
+const ANEW: usize = 12;
 /// Share of what the best one gains by which another may lie behind and still matter: as much as
 /// one that is told as its equal.
 const WITHIN_REACH: f64 = 0.1;
@@ -49,6 +51,9 @@ impl<'a> Candidate<'a> {
 
     fn steps_on(&self, most_steps: usize) -> Self {
         let mut settling = self.settling.clone();
+        if most_steps == ANEW + STEPS {
+            settling.begin_anew();
+        }
         settling.step_on(most_steps);
         let settled = settling.settled();
         let mut logs = self.logs.clone();
@@ -56,14 +61,18 @@ impl<'a> Candidate<'a> {
         Self { settling, settled, logs }
     }
 
-    /// Whether it has not settled and may come so far.
-    fn may_reach(&self, reach: f64) -> bool {
+    /// Whether it may come so far by more steps, up to so many.
+    fn may_reach(&self, reach: f64, most_steps: usize) -> bool {
         let wanted = reach - self.settled.log_evidence;
+        if self.settled.promised <= 0.0 || wanted >= MAY_GAIN * self.settled.promised {
+            return false;
+        }
+        if most_steps == ANEW + STEPS {
+            return true;
+        }
         let [now, then] = [1, 1 + LOOKS].map(|back| self.logs.len().checked_sub(back));
         let gained = now.zip(then).map(|(now, then)| self.logs[now] - self.logs[then]);
-        !self.settling.is_done()
-            && wanted < MAY_GAIN * self.settled.promised
-            && gained.is_none_or(|gained| wanted < MAY_GAIN_AGAIN * gained)
+        !self.settling.is_done() && gained.is_none_or(|gained| wanted < MAY_GAIN_AGAIN * gained)
     }
 }
 
@@ -74,26 +83,8 @@ pub(in crate::diagnosis) fn fit_all(
     scores: &[Scored],
     noise: &[ChannelNoise],
 ) -> Vec<Tried> {
-    fit_again(survey, current, scores, &[], noise)
-}
-
-/// The same where some have been fitted under another noise, from where that leaves less.
-pub(super) fn fit_again(
-    survey: &Survey,
-    current: &Settled,
-    scores: &[Scored],
-    earlier: &[Tried],
-    noise: &[ChannelNoise],
-) -> Vec<Tried> {
     let mut all = cores::each(scores.len(), |k| {
-        let extension = scores[k].extension.clone();
-        let known = earlier.iter().find(|one| one.id == extension.effect.id);
-        let mut start = with(survey, &current.fit, extension, noise);
-        if let Some(known) = known
-            && survey.misfit(&known.settled.fit, noise) < survey.misfit(&start, noise)
-        {
-            start = known.settled.fit.clone();
-        }
+        let mut start = with(survey, &current.fit, scores[k].extension.clone(), noise);
         if onset::has_instants(&start) {
             // Before these are placed it says little of how far it will come.
             let settled = settle(survey, start, noise);
@@ -106,10 +97,8 @@ pub(super) fn fit_again(
         let plausible = settled.filter(|one| is_newest_plausible(survey, one));
         let best = plausible.map(|one| one.log_evidence).fold(f64::NEG_INFINITY, f64::max);
         let reach = best - SAME.max(WITHIN_REACH * (best - current.log_evidence));
-        let on: Vec<usize> = (0..all.len()).filter(|k| all[*k].may_reach(reach)).collect();
-        if on.is_empty() {
-            break;
-        }
+        let goes_on = |k: &usize| all[*k].may_reach(reach, most_steps);
+        let on: Vec<usize> = (0..all.len()).filter(goes_on).collect();
         let further = cores::each(on.len(), |k| all[on[k]].steps_on(most_steps));
         for (k, further) in on.into_iter().zip(further) {
             all[k] = further;

@@ -41,6 +41,12 @@ pub(in crate::diagnosis) struct Judged {
 }
 
 impl Judged {
+    /// Whether every cause of it is one of another, too.
+    pub(in crate::diagnosis) fn is_part_of(&self, other: &Self) -> bool {
+        let is_there = |id: &str| other.causes.iter().any(|cause| cause.effect == id);
+        self.causes.iter().all(|cause| is_there(cause.effect))
+    }
+
     /// What the model leaves for sure, as a share of the motion; nothing counts as explained by
     /// one that does not explain the runs.
     pub(in crate::diagnosis) fn left(&self) -> f64 {
