@@ -324,7 +324,7 @@ mod tests {
 
     #[test]
     fn where_nothing_but_noise_is_read_few_nodes_tell_so() {
-        // Every rate of the moment's walk below some weighs the same: it is no walk over the record.
+        // Every rate of the moment's walk below some weighs the same: over the record it is none.
         let tau: Vec<f64> = (0..1000).map(|k| 0.08 * f64::from(k)).collect();
         let record: Vec<f64> = (0..1000).map(|k| (7.3 * f64::from(k * k)).sin()).collect();
         let problem = MomentProblem {
