@@ -56,11 +56,9 @@ pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
     }
     let mut together = judge(&survey, grown);
     if together.judged.left() > 0.0 {
-        let others =
+        let mut others =
             of_one_kind.stems(&survey).map(|stem| judge(&survey, grow(&survey, Some(stem))));
-        let mut better = others.filter(|other| other.leaves_less_than(&together));
-        if let Some(other) = better.next() {
-            drop(better);
+        if let Some(other) = others.find(|other| other.leaves_less_than(&together)) {
             together = other;
         }
     }

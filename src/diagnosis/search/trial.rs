@@ -187,6 +187,7 @@ mod tests {
         let best_alone = most(&mut each.map(|settled| settled.log_evidence));
         let tried = fit_all(&together, &current, &scores, &noise);
         let best = most(&mut tried.iter().map(|one| one.settled.log_evidence));
+        // A fit has settled where no more than so much misfit is promised to it.
         assert!((best - best_alone).abs() < 0.05, "{best} and {best_alone}");
         let (of_all, of_each) = (together.cost.n_spent(), alone.cost.n_spent());
         assert!(10 * of_all < 9 * of_each, "{of_all} together, {of_each} each alone");

@@ -58,8 +58,10 @@ pub struct StatePosterior {
 /// Range of the logarithm of the intensity that is searched. Below it the moment is a polynomial
 /// over any record; above it the moment follows the noise of every sample.
 const LOG_INTENSITY_RANGE: (f64, f64) = (-10.0, 14.0);
-/// Where what is believed of the intensity ends: below it even the rate of a moment that is read
-/// directly is constant over the longest record, so that all nodes would weigh the same.
+/// Where what is believed of the intensity ends: below it all nodes would weigh the same. A moment
+/// that is read directly, its rate a walk of this intensity `q`, leaves a line by
+/// `q sqrt(tau^3 / 3)`, the deviation of a walk summed up: over 160 periods by 0.002 of a reading's
+/// noise.
 const LEAST_LOG_INTENSITY: f64 = -16.0;
 
 /// How finely the intensity is integrated over.
@@ -336,6 +338,7 @@ mod tests {
             quadrature: Quadrature::BAND,
         };
         let told = problem.solve::<2, Drifting>();
+        // A step is at most three wide, and from the middle of the range to its end are 18.
         assert!(told.nodes.len() < 20, "{} nodes", told.nodes.len());
         let is_nought = |(mean, sd): (&[f64; 3], &[f64; 3])| mean[2].abs() < 3.0 * sd[2];
         assert!(told.mean.iter().zip(&told.sd).all(is_nought));
