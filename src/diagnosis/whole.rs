@@ -67,6 +67,8 @@ pub fn diagnose(gathered: Gathered, tank: &Tank) -> Option<Diagnosis> {
         let short = Survey::new(short.collect(), &spent);
         let whole = Survey::new(whole, &spent);
         let explained = explained(&whole, &short, &survey, &together.grown, &of_one_kind, judge);
+        // Nor is it known, where this search was cut short, what another would have found.
+        together.grown.is_cut_short |= whole.cost.is_spent();
         // What names more of what the runs alone show is better than what explains what came
         // after, unless that does as well for the runs.
         let names_enough = |of_whole: &Explained| {
